@@ -236,9 +236,12 @@ class Interface:
     def about(self, s, steps, omega=0.0):
         """Stiffness and damping matrices (3, 3) of film and asperities about a gap state, `steps` as in
         condensation.moved_gaps; of a film with unknowns at the frequency `omega` (rad/s)."""
-        if self.unknowns is None:
+        if self.film.matrices is not None:
+            stiffness, damping = self.film.matrices(self.f, s)
+        elif self.unknowns is None:
             return linearise(self.wrench, self._fine, s, steps)
-        stiffness, damping = self.linear_film(s, steps).matrices(omega)
+        else:
+            stiffness, damping = self.linear_film(s, steps).matrices(omega)
         if self.contact is not None:
             stiffness = stiffness + linearise(self._asperities_alone, self._fine, s, steps)[0]
         return stiffness, damping

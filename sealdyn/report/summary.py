@@ -173,13 +173,20 @@ def _settled_throughout(summary) -> bool:
     return all(f"{a:.4g}" == f"{b:.4g}" or abs(a - b) <= apart for a, b, apart in pairs)
 
 
+# What ends the margin where it is no touch.
+MARGIN_ENDS = {
+    "small tilts": "not limited by touch within small tilts, which are over at",
+    "laminar film": "not limited by touch while the film is laminar, which is over at",
+}
+
+
 def _margin(summary, contact) -> Line:
     """By how much the forcing may grow, of linear theory."""
     margin = summary["contact_margin"]
     if margin == 0.0:
         return Line("margin", [("the asperities touch without any forcing", None, "")])
-    if summary.get("contact_margin_limit") == "small tilts":
-        over = ("not limited by touch within small tilts, which are over at", margin, "1")
+    if ended := MARGIN_ENDS.get(summary.get("contact_margin_limit")):
+        over = (ended, margin, "1")
         return Line("margin", [over, ("times this forcing (linear theory)", None, "")])
     words = "times this forcing touches (linear theory)"
     also = "the faces touched in this run" if contact and contact["touches"] and margin >= 1.0 else ""

@@ -1,8 +1,9 @@
 """Scenes made of a scene: other values at dotted keys, everything held constant, nothing imposed, the other ring
 flexible, or both.
 
-The counterpart carries the same ring on the other side: mass, inertias, support and own misalignment move over; the
-rigid partner gets the runout (FMS) or the fixed misalignment (FMR) that the other partner had.  The film stays.
+The counterpart carries the same ring on the other side: mass, inertias, support, waves and own misalignment move
+over; the rigid partner gets the runout (FMS) or the fixed misalignment (FMR) that the other partner had.  The film
+stays.
 """
 
 from collections.abc import Callable
@@ -46,6 +47,8 @@ LEFT_OUT = {
 }
 CARRIED = ("mass", "transverse_inertia", "polar_inertia", "body", "unphysical_inertia", "misalignment", "support",
            "secondary_seal")  # fmt: skip
+# What a face keeps, whichever side its ring is on.
+FACE = ("waviness",)
 
 
 def part(scene, key: str) -> Any:
@@ -174,15 +177,19 @@ def counterpart(scene: Scene) -> Scene:
     if rotor.support and stator.support:
         raise SceneError("stator.support", "a support under both rings", "one flexible ring, to have a counterpart")
     if rotor.support:
-        moved = {name: getattr(rotor, name) for name in CARRIED}
+        moved = {name: getattr(rotor, name) for name in CARRIED + FACE}
         new_stator = Stator(**moved, misalignment_direction=rotor.misalignment_phase, speed=stator.speed)
         new_rotor = Rotor(
-            runout=stator.misalignment, runout_phase=stator.misalignment_direction, axial_runout=rotor.axial_runout
+            runout=stator.misalignment,
+            runout_phase=stator.misalignment_direction,
+            axial_runout=rotor.axial_runout,
+            waviness=stator.waviness,
         )
     else:
-        moved = {name: getattr(stator, name) for name in CARRIED}
+        moved = {name: getattr(stator, name) for name in CARRIED + FACE}
         new_rotor = Rotor(**moved, misalignment_phase=stator.misalignment_direction, axial_runout=rotor.axial_runout)
-        new_stator = Stator(misalignment=rotor.runout, misalignment_direction=rotor.runout_phase, speed=stator.speed)
+        new_stator = Stator(misalignment=rotor.runout, misalignment_direction=rotor.runout_phase, speed=stator.speed,
+                            waviness=rotor.waviness)  # fmt: skip
     start = Initial(rotor=scene.initial.stator, stator=scene.initial.rotor)
     return replace(scene, rotor=new_rotor, stator=new_stator, initial=start)
 

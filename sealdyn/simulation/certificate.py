@@ -23,7 +23,7 @@ from ..solvers.matrix_exponential import BETWEEN
 from ..solvers.methods import METHODS
 from .film_error import cell_error, model_error
 from .selection import Plan
-from .verification_run import LEAST_SHARPER, OTHER, Comparison, ErrorScales, budget
+from .verification_run import EXPLICIT, LEAST_SHARPER, OTHER, Comparison, ErrorScales, budget
 
 # The stretch (fastest periods), and what it shows, times this, is what a run has (what passes ERROR_SHARE nevertheless
 # is sharpened).
@@ -337,8 +337,6 @@ HELPED = 0.5
 WHOLE = 0.1
 # Steps of a run beyond which it is not done again, and beyond which not by a method that is not compiled.
 LONG, SLOW = 1_000_000, 1_000
-# Methods that crawl where decay is fast: none is tried where BDF was chosen for that.
-EXPLICIT = ("adams", "dop853")
 
 
 def next_plan(run, solver: str, plan: Plan, outcome, found: dict, tries: list) -> Plan | None:

@@ -89,6 +89,21 @@ def _pressure_floor(run):
         yield Caution(Concern.FLOOR, beside["said"])
 
 
+def couette_number(model, radius: float, thickness: float) -> float:
+    """Couette Reynolds number of a film `thickness` (m) at a radius (m), at the fastest sliding, the least viscosity
+    and, of a gas, the highest pressure of the scene; NaN where coefficients of one's own stand for the film.  The film
+    counts as laminar up to LAMINAR."""
+    film, scene = model.scene.film, model.scene
+    if film.gas is None and not _is_liquid(model):
+        return math.nan
+    sliding = max(abs(r - s) for r, s in product(points(scene.shaft.speed), points(scene.stator.speed)))
+    density = film.density
+    if film.gas is not None:
+        high = max(*points(film.inner_pressure), *points(film.outer_pressure))
+        density = high / (gas_of(film).gas_constant * min(points(film.temperature)))
+    return couette_reynolds(density, min(points(viscosity_of(film))), sliding * radius, thickness)
+
+
 def _units(scenario, model):
     """Bare numbers that no seal has, faces a millimetre apart."""
     yield from (Caution(Concern.UNITS, said) for said in unit_warnings(scenario))
@@ -151,11 +166,9 @@ def _heat(rise, flux):
 
 def _turbulence(model, leakage):
     """Reynolds numbers of the aligned film at the fastest sliding and the least viscosity."""
-    film, scene = model.scene.film, model.scene
-    viscosity = min(points(film.viscosity))
-    sliding = max(abs(r - s) for r, s in product(points(scene.shaft.speed), points(scene.stator.speed)))
+    film, viscosity = model.scene.film, min(points(model.scene.film.viscosity))
     gaps = [gap for gap in model.aligned_gaps() if gap[1] > 0.0]
-    numbers = [(couette_reynolds(film.density, viscosity, sliding * r, h), r) for r, h in gaps]
+    numbers = [(couette_number(model, r, h), r) for r, h in gaps]
     (first, inner), (most, radius) = numbers[0], max(numbers)
     doubt = f"the film counts as laminar, which it is below some {LAMINAR:.0f}"
     if most > LAMINAR:
@@ -171,7 +184,7 @@ def _turbulence(model, leakage):
 def _gas_flow(model, leakage):
     """A gas film that is isothermal and without inertia where the gas is fast: Mach number of the aligned film at the
     low pressure, with the mass flow of the mean leakage (m^3/s at normal conditions)."""
-    film, scene = model.scene.film, model.scene
+    film = model.scene.film
     gas, temperature = gas_of(film), min(points(film.temperature))
     sound = math.sqrt(gas.heat_ratio * gas.gas_constant * temperature)
     low = min(*points(film.inner_pressure), *points(film.outer_pressure))
@@ -189,10 +202,8 @@ def _gas_flow(model, leakage):
             yield Caution(Concern.TURBULENCE, f"perhaps turbulent: {found}; the film counts as laminar")
     if model.interface.name == "gas_dam":
         yield from _wide_dam(film)
-    sliding = max(abs(r - s) for r, s in product(points(scene.shaft.speed), points(scene.stator.speed)))
-    high = max(*points(film.inner_pressure), *points(film.outer_pressure))
     thickest, at = max((h, r) for r, h in model.aligned_gaps())
-    most = couette_reynolds(high / (gas.gas_constant * temperature), viscosity, sliding * at, thickest)
+    most = couette_number(model, at, thickest)
     if most > LAMINAR:
         found = f"Couette Reynolds number {most:.0f} at r = {at * 1e3:.4g} mm"
         yield Caution(Concern.TURBULENCE, f"perhaps turbulent: {found}, below {LAMINAR:.0f} it is laminar")

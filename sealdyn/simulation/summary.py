@@ -21,7 +21,7 @@ from ..scene.radial import RadialScene
 from ..scene.rings import RING_NAMES, ROTOR, SMALL_TILT, STATOR
 from ..solvers.contract import Status
 from ..solvers.energy_audit import missing_energy
-from .plausibility import cautions, unit_warnings
+from .plausibility import LAMINAR, cautions, couette_number, unit_warnings
 from .stability import found_alone, no_stability, stability
 
 # What ends the growth of the forcing, unless tilts are small no more.
@@ -371,8 +371,9 @@ def _answers(segment, at, linear):
 
 def _contact_margin(model, at, linear, tilt, answers):
     """Factor by which the forcing may grow in linear theory, and what ends it: at "touch" the gap closes at an edge,
-    to the height of the asperities where there are any (0 where they touch without forcing), "small tilts" are over
-    before (SMALL_TILT).  Unknown of wavy faces, of aligned ones that press with a moment, and of a sweep, which is over
+    to the height of the asperities where there are any (0 where they touch without forcing), or before "small tilts"
+    are over (SMALL_TILT), or a "laminar film" at the edge that opens; one that is not laminar at rest has a caution
+    instead.  Unknown of wavy faces, of aligned ones that press with a moment, and of a sweep, which is over
     in the last segment."""
     if waves_of(model.scene) or model.scene.housing.sweeps:
         return math.nan, None
@@ -385,12 +386,17 @@ def _contact_margin(model, at, linear, tilt, answers):
     if tilt is None or modes.verdict(linear.modes()) != "stable":
         return math.nan, None
     most, _, closing, _ = tilt
-    reaches = [(inner - height, face[0] * most + closing), (outer - height, face[1] * most + closing)]
-    margin = min((gap / reach for gap, reach in reaches if reach > 0), default=math.inf)
-    tilted = modes.tilt_bound(answers())
-    if tilted > 0.0 and margin > SMALL_TILT / tilted:
-        return SMALL_TILT / tilted, "small tilts"
-    return margin, TOUCHED if math.isfinite(margin) else None
+    ends, tilted = [(math.inf, None)], modes.tilt_bound(answers())
+    for gap, radius in ((inner, face[0]), (outer, face[1])):
+        reach, each = radius * most + closing, couette_number(model, radius, 1.0)
+        if reach > 0.0:
+            ends.append(((gap - height) / reach, TOUCHED))
+            # An edge opens by as much as it closes.
+            if each * gap <= LAMINAR and each > 0.0:
+                ends.append(((LAMINAR / each - gap) / reach, "laminar film"))
+    if tilted > 0.0:
+        ends.append((SMALL_TILT / tilted, "small tilts"))
+    return min(ends, key=lambda end: end[0])
 
 
 def _closed_form(segment, at, linear, tilt):

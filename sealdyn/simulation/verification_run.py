@@ -40,6 +40,8 @@ SHARPER_FILM = 0.1
 CELLS = 0.5
 # Another method where the same one cannot be any sharper.
 OTHER = {"adams": "bdf", "bdf": "radau", "ida": "ida", "dop853": "radau", "radau": "dop853", "trbdf2": "trbdf2"}
+# Methods that crawl where decay is fast: none is tried where BDF was, or would be, chosen for that.
+EXPLICIT = ("adams", "dop853")
 # Evaluations that another run may take, over those of the one before, and how many compiled ones one in Python costs.
 BUDGET, INTERPRETED = 10.0, 30.0
 
@@ -223,7 +225,12 @@ def sharper(method: str, tolerance: float, run) -> tuple[str, float]:
     """A method and a tolerance sharper than these, or another method where this one has no more to give."""
     if tolerance >= LEAST_SHARPER * TIGHTEST:
         return method, max(tolerance / (SHARPER_AT_SECOND if method == "trbdf2" else SHARPER), TIGHTEST)
+    # It chooses films by their error, which film_error.py has from here.
+    from .selection import choose_method
+
     other = OTHER[method]
+    if other in EXPLICIT and isinstance(run, RunState) and choose_method(run)[0] == "bdf":
+        other = "bdf"
     return other, tolerance_for(other, max(run.model.accuracy / SHARPER, 2 * attainable(other, run.memory)), run.memory)
 
 

@@ -37,8 +37,8 @@ from sealdyn.simulation.certificate import LOOSER, certify, choose_tolerance, er
 from sealdyn.simulation.film_error import model_error, model_errors
 from sealdyn.simulation.selection import Plan, Start, select_film
 from sealdyn.simulation.simulate import simulate, simulate_in_memory
-from sealdyn.simulation.verification_run import Comparison, ProgressSink
-from sealdyn.solvers.contract import Counts, Recorder, tolerance_for
+from sealdyn.simulation.verification_run import Comparison, ProgressSink, sharper
+from sealdyn.solvers.contract import TIGHTEST, Counts, Recorder, tolerance_for
 from sealdyn.solvers.global_error import GlobalErrorEstimate
 from sealdyn.solvers.integrate import solve
 
@@ -144,6 +144,16 @@ def test_a_measuring_run_has_a_budget(method, monkeypatch):
     seen.dear = ""
     found, _ = certificate.certificate(ready, plan, outcome, None, seen)
     assert found["solver"] < 1e-5
+
+
+@pytest.mark.parametrize("thicker, method", [(1.0, "dop853"), (1e4, "bdf")], ids=["gentle", "stiff"])
+def test_no_explicit_method_measures_where_decay_is_fast(thicker, method):
+    """Radau at its floor of tolerance was measured by DOP853, which crawls there."""
+    scene = fms()
+    scene = replace(scene, film=replace(scene.film, viscosity=thicker * scene.film.viscosity))
+    run = prepared(scene, TURN, 1e-5)
+    assert sharper("radau", TIGHTEST, run)[0] == method
+    assert sharper("bdf", TIGHTEST, run)[0] == "radau"
 
 
 @pytest.mark.slow

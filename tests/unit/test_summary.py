@@ -160,7 +160,14 @@ def test_the_settled_part_comes_first_and_the_transient_by_its_name():
 @pytest.mark.core
 def test_the_margin_ends_where_asperities_meet():
     """Linear theory of the reference seal: gap over reach at an edge; asperities of 3 rms take their height away."""
-    rough = ["contact.compressive_strength='300 MPa'", "run.turns=1", "run.accuracy=1e-4", "run.start='rest'"]
+    # So light that the film is laminar up to there.
+    rough = [
+        "contact.compressive_strength='300 MPa'",
+        "film.density=100",
+        "run.turns=1",
+        "run.accuracy=1e-4",
+        "run.start='rest'",
+    ]
     margins = {}
     for rms in (0.1, 1.0):
         scenario = read_scenario(SEAL, [*rough, f"contact.roughness='{rms} um'"])
@@ -187,7 +194,27 @@ def test_a_margin_ends_where_tilts_are_small_no_more():
     assert found["contact_margin_limit"] == "small tilts" and own < 0.1 * found["film"]["clearance"]
     # The ring tilts by as much as the rotor is out of square, and a ten-thousandth more.
     assert found["contact_margin"] * scenario.scene.rotor.runout == pytest.approx(SMALL_TILT, rel=1e-3)
-    assert simulate_in_memory(read_scenario(SEAL, ["run.turns=1"]))["contact_margin_limit"] == "touch"
+    assert (
+        simulate_in_memory(read_scenario(SEAL, ["run.turns=1", "film.density=100"]))["contact_margin_limit"] == "touch"
+    )
+
+
+@pytest.mark.parametrize("reynolds, ends", [(0.8, "laminar film"), (0.2, "touch"), (1.2, "touch")])
+def test_a_margin_ends_where_the_film_is_laminar_no_more(reynolds, ends):
+    """An edge opens as it closes, up to rho U h = 1000 mu; a film that is beyond it at rest has a caution instead."""
+    film = read_scenario(SEAL).scene.film
+    shaft, edges = 1000.0, (film.inner_radius, film.outer_radius)
+    gaps = [film.clearance + film.coning * (r - edges[0]) for r in edges]
+    per_density = max(shaft * r * h for r, h in zip(edges, gaps, strict=True)) / film.viscosity
+    density = 1000.0 * reynolds / per_density
+    short = ["run.turns=1", "run.start='rest'", f"film.density={density}"]
+    found = simulate_in_memory(read_scenario(SEAL, short))
+    assert found["contact_margin_limit"] == ends
+    if ends != "touch":
+        theory, limit = found["closed_form"], 1000.0 * film.viscosity / density / shaft
+        room = [(limit / r - h) / (r * theory["relative_max"] + theory["axial_closing"])
+                for r, h in zip(edges, gaps, strict=True)]  # fmt: skip
+        assert found["contact_margin"] == pytest.approx(min(room), rel=1e-6)
 
 
 def test_asperities_that_touch_without_forcing_leave_no_margin():

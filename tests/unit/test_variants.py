@@ -11,11 +11,11 @@ from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scenario import reader
 from sealdyn.scenario.overrides import override_of
 from sealdyn.scenario.reader import ScenarioError, parse_scenario
-from sealdyn.scene.contact import Contact
+from sealdyn.scene.contact import Contact, Waviness
 from sealdyn.scene.excitation import AxialVibration, Housing
 from sealdyn.scene.rings import AxialRunout, Support
 from sealdyn.scene.scene import SceneError
-from sealdyn.scene.variants import part, tables_at_end, with_values, without
+from sealdyn.scene.variants import counterpart, part, tables_at_end, with_values, without
 
 TEXT = (Path(__file__).parents[2] / "scenarios" / "fms_reference.toml").read_text()
 RAMP = PiecewiseLinear((0.0, 0.5), (100.0, 900.0))
@@ -147,3 +147,13 @@ def test_what_was_read_is_not_changed_by_what_is_made_of_it():
     changed = reader.with_values(read, {"housing.axial.0.frequency": 70.0, "study.rub.down": False})
     assert changed.scene.housing.axial[0].frequency == 70.0 and changed.study["rub"]["down"] is False
     assert pickle.loads(kept) == read
+
+
+@pytest.mark.parametrize("made", [fms, fmr])
+def test_a_ring_keeps_the_waves_of_its_face_on_the_other_side(made):
+    """They were dropped."""
+    own, other = [Waviness(2, 1e-7)], [Waviness(3, 2e-7)]
+    scene = made()
+    scene = replace(scene, stator=replace(scene.stator, waviness=own), rotor=replace(scene.rotor, waviness=other))
+    turned = counterpart(scene)
+    assert turned.rotor.waviness == own and turned.stator.waviness == other
