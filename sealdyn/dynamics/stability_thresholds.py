@@ -296,8 +296,8 @@ def resonance_speeds(values, low: float, high: float, points: int = 120, whirl: 
         a, b = speeds[k], speeds[k + 1]
         at = _mended(whirl, rates[k, mode], a, b, each[k, mode] / (each[k, mode] - each[k + 1, mode]))
         if at is None:
-            at = crossing(lambda w, mode=mode: distances([w])[0][0, mode], a, b, 1e-13)
-        # NaN: the mode stops oscillating inside the bracket, no crossing.
+            at = crossing(lambda w, mode=mode: dict(enumerate(distances([w])[0][0])).get(mode, np.nan), a, b, 1e-13)
+        # NaN: the mode stops oscillating inside the bracket, or no film holds there, no crossing.
         found += [at] if np.isfinite(at) else []
     return found
 

@@ -162,6 +162,22 @@ def test_a_mode_that_turns_round_hides_no_resonance_of_another():
     assert stability_thresholds.resonance_speeds(values, 1.0, 1e4) == pytest.approx([100.0])
 
 
+@pytest.mark.parametrize("modes", [1, 2])
+def test_no_mode_where_no_film_holds_is_no_resonance(modes):
+    """Between speeds that have modes lies one that has none, or fewer."""
+
+    def values(speeds):
+        w = np.asarray(speeds, dtype=float)
+        found = np.stack([-1.0 + 1j * (50.0 + 0.5 * w), -1.0 + 1j * (20.0 + 0.3 * w)][:modes], axis=1)
+        gone = np.abs(w - 100.0) < 1.0
+        found[gone, 0] = np.nan
+        found = found[:, ~np.isnan(found).all(axis=0)]
+        return found, np.zeros(found.shape)
+
+    fewer = [20.0 / 0.7] if modes == 2 else []
+    assert stability_thresholds.resonance_speeds(values, 1.0, 1e4) == pytest.approx(fewer)
+
+
 def test_crossing_of_hard_functions():
     hard = (
         (lambda x: x**3 - 2.0, 0.0, 5.0, 2.0 ** (1 / 3)),
