@@ -22,7 +22,7 @@ from ..solvers.integrate import COMPILED, Advance, Outcome
 from ..solvers.matrix_exponential import BETWEEN
 from ..solvers.methods import METHODS
 from .film_error import cell_error, model_error
-from .selection import Plan
+from .selection import Plan, choose_method
 from .verification_run import EXPLICIT, LEAST_SHARPER, OTHER, Comparison, ErrorScales, budget
 
 # The stretch (fastest periods), and what it shows, times this, is what a run has (what passes ERROR_SHARE nevertheless
@@ -312,7 +312,11 @@ def certificate(
         try:
             work = budget(plan.method, outcome.counts)
             how = {"method": plan.method, "tolerance": outcome.tolerance, "work": work}
-            apart, cells = seen.error_over_time(progress, stop, **how), seen.error_of_cells(progress, stop, **how)
+            stiff = plan.method == "radau" and _would_take_bdf(run)
+            apart, cells = (
+                seen.error_over_time(progress, stop, **how, stiff=stiff),
+                seen.error_of_cells(progress, stop, **how),
+            )
         except Enough:
             return _interruption(asked, outcome)
         if seen.failure:
@@ -327,6 +331,11 @@ def certificate(
     found = replace(found, said=f"{found.said}; the sharper run is {seen.dear}") if seen and seen.dear else found
     return {"asked": found.asked, "estimated": found.estimated, "solver": found.solver, "model": found.model,
             "met": found.met, "horizon": found.horizon, **beside, "said": found.said}, outcome  # fmt: skip
+
+
+def _would_take_bdf(run) -> bool:
+    """Whether decay is so fast in a run that BDF would be chosen for it."""
+    return not isinstance(run.model.scene, RadialScene) and choose_method(run)[0] == "bdf"
 
 
 # Tries in all; the share of the accuracy aimed at, and by how much a tolerance is sharpened at least and at most.

@@ -71,16 +71,17 @@ class Comparison:
             self.columns[first:last] = found
 
     def error_over_time(
-        self, progress=None, stop=None, *, method: str, tolerance: float, work: float = math.inf
+        self, progress=None, stop=None, *, method: str, tolerance: float, work: float = math.inf, stiff: bool = False
     ) -> np.ndarray | None:
         """How far (m,) this run, done by `method` with `tolerance`, is from a sharper one at each instant, the largest
         over all quantities, relative to its scale; NaN where the two cannot be compared, infinite where the other has
         ended.  None if nothing can be compared; `progress(t, end)` and `stop()` as in `simulate`; Enough once `stop`
-        asks for it.  `work`: compiled evaluations after which the other gives up, NaN from there on."""
+        asks for it.  `work`: compiled evaluations after which the other gives up, NaN from there on; `stiff`
+        as `sharper` takes it."""
         model = self.run.model
         # A film below its floor has a bend, of which its integrals feel more than of anything else.
         again = self.run.anew(model.with_sharper_film(SHARPER_FILM) if model.scene.contact else None)
-        return self._apart(again, *sharper(method, tolerance, self.run), progress, stop, work)
+        return self._apart(again, *sharper(method, tolerance, self.run, stiff), progress, stop, work)
 
     def error_of_cells(
         self, progress=None, stop=None, *, method: str, tolerance: float, work: float = math.inf
@@ -161,7 +162,7 @@ class RadialComparison(Comparison):
         self.columns = None
 
     def error_over_time(
-        self, progress=None, stop=None, *, method: str, tolerance: float, work: float = math.inf
+        self, progress=None, stop=None, *, method: str, tolerance: float, work: float = math.inf, stiff: bool = False
     ) -> np.ndarray | None:
         """How far (m,) this run is from one with sharper steps and sharper events: how long a step may be and what
         counts as contact follow from the accuracy."""
@@ -221,15 +222,13 @@ def budget(method: str, counts: Counts) -> float:
     return BUDGET * counts.rhs * price(method)
 
 
-def sharper(method: str, tolerance: float, run) -> tuple[str, float]:
-    """A method and a tolerance sharper than these, or another method where this one has no more to give."""
+def sharper(method: str, tolerance: float, run, stiff: bool = False) -> tuple[str, float]:
+    """A method and a tolerance sharper than these, or another method where this one has no more to give; `stiff`: of a
+    scene whose decay is fast."""
     if tolerance >= LEAST_SHARPER * TIGHTEST:
         return method, max(tolerance / (SHARPER_AT_SECOND if method == "trbdf2" else SHARPER), TIGHTEST)
-    # It chooses films by their error, which film_error.py has from here.
-    from .selection import choose_method
-
     other = OTHER[method]
-    if other in EXPLICIT and isinstance(run, RunState) and choose_method(run)[0] == "bdf":
+    if other in EXPLICIT and stiff:
         other = "bdf"
     return other, tolerance_for(other, max(run.model.accuracy / SHARPER, 2 * attainable(other, run.memory)), run.memory)
 
