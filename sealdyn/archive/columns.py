@@ -100,17 +100,17 @@ def _column(held, most: int) -> tuple[list[float], str]:
     plan = held.id.get_create_plist()
     if plan.get_layout() == h5py.h5d.VIRTUAL or plan.get_external_count():
         raise ArchiveError("numbers that stand in other files")
-    said = _attributes(held)
+    attributes = _attributes(held)
     stored = held[()]
-    if _text(said.pop("_unsigned", "")).lower() == "true" and stored.dtype.kind == "i":
+    if _text(attributes.pop("_unsigned", "")).lower() == "true" and stored.dtype.kind == "i":
         stored = stored.view(stored.dtype.str.replace("i", "u"))
-    _refuse_missing(held, stored, said)
-    scale, offset = (_number(said, key, without) for key, without in (("scale_factor", 1.0), ("add_offset", 0.0)))
-    units = {_text(said[key]) for key in ("unit", "units") if key in said}
+    _refuse_missing(held, stored, attributes)
+    scale, offset = (_number(attributes, key, without) for key, without in (("scale_factor", 1.0), ("add_offset", 0.0)))
+    units = {_text(attributes[key]) for key in ("unit", "units") if key in attributes}
     if len(units) > 1:
         raise ArchiveError(f"the units {' and '.join(sorted(units))}")
     values = stored.astype(float)
-    packed = {"scale_factor", "add_offset"} & set(said)
+    packed = {"scale_factor", "add_offset"} & set(attributes)
     return (values * scale + offset if packed else values).tolist(), "".join(units)
 
 
@@ -125,18 +125,20 @@ def _attributes(held) -> dict:
     return found
 
 
-def _refuse_missing(held, stored, said: dict) -> None:
+def _refuse_missing(held, stored, attributes: dict) -> None:
     """Raises ArchiveError for a sample that says by its value, as it is stored, that there is none."""
-    fills = [(key, _numbers(said, key, stored.dtype)) for key in ("_fillvalue", "missing_value") if key in said]
+    fills = [
+        (key, _numbers(attributes, key, stored.dtype)) for key in ("_fillvalue", "missing_value") if key in attributes
+    ]
     own = held.fillvalue
     if own != 0 and np.isfinite(own):
         # What was never written reads so; the program's own, without which it is zero.
         fills.append(("fill value", np.array([own]).astype(stored.dtype)))
     outside = [(key, np.isin(stored, values)) for key, values in fills]
-    low, high = _numbers(said, "valid_range", stored.dtype, 2) if "valid_range" in said else (None, None)
+    low, high = _numbers(attributes, "valid_range", stored.dtype, 2) if "valid_range" in attributes else (None, None)
     given = {"valid_min": low, "valid_max": high}
     for key, beyond in BOUNDS.items():
-        bound = _numbers(said, key, stored.dtype, 1)[0] if key in said else given[key]
+        bound = _numbers(attributes, key, stored.dtype, 1)[0] if key in attributes else given[key]
         if bound is not None:
             outside.append((key, beyond(stored, bound)))
     for key, where in outside:
@@ -144,18 +146,18 @@ def _refuse_missing(held, stored, said: dict) -> None:
             raise ArchiveError(f"sample {int(np.argmax(where)) + 1} is missing, by its {key}")
 
 
-def _number(said: dict, key: str, without: float) -> float:
-    if key not in said:
+def _number(attributes: dict, key: str, without: float) -> float:
+    if key not in attributes:
         return without
-    value = float(_numbers(said, key, None, 1)[0])
+    value = float(_numbers(attributes, key, None, 1)[0])
     if not math.isfinite(value) or (key == "scale_factor" and value == 0.0):
         raise ArchiveError(f"the attribute {key} is {value:g}")
     return value
 
 
-def _numbers(said: dict, key: str, kind, count: int | None = None) -> np.ndarray:
+def _numbers(attributes: dict, key: str, kind, count: int | None = None) -> np.ndarray:
     """Numbers of an attribute, (count,), of the type `kind` of what is stored where they are compared with it."""
-    values = np.atleast_1d(np.asarray(said[key]))
+    values = np.atleast_1d(np.asarray(attributes[key]))
     if values.dtype.kind not in "fiu" or values.ndim != 1 or len(values) != (count or max(1, len(values))):
         raise ArchiveError(f"the attribute {key} is not {count or 'one or more'} number{'s' * (count != 1)}")
     if kind is not None and kind.kind == "f":

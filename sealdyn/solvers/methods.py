@@ -8,7 +8,6 @@ from . import sundials_python
 from .contract import SolverFailure, absolute_tolerances, failure_message
 from .matrix_exponential import expm
 from .sundials_libraries import libraries
-from .trbdf2 import trbdf2
 
 
 def dop853_or_radau(segment, tau, y, method, tolerance, counts):
@@ -111,6 +110,13 @@ def _back_end(segment, counts, form):
     return sundials_direct
 
 
+def _trbdf2(*given):
+    """TR-BDF2, loaded where it is used: for cells that tear and fill."""
+    from .trbdf2 import trbdf2
+
+    return trbdf2(*given)
+
+
 METHODS = {
     "adams": cvode,
     "bdf": cvode,
@@ -118,5 +124,5 @@ METHODS = {
     "dop853": dop853_or_radau,
     "radau": dop853_or_radau,
     "expm": expm,
-    "trbdf2": trbdf2,
+    "trbdf2": _trbdf2,
 }

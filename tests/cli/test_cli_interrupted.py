@@ -177,7 +177,7 @@ def test_what_has_finished_nothing_says_so(tmp_path, words, number):
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-@pytest.mark.parametrize("loaded", ["sealdyn.kernel_cache", "typer", "sealdyn.terminal"])
+@pytest.mark.parametrize("loaded", ["sealdyn", "typer", "sealdyn.terminal"])
 def test_a_signal_in_the_first_moments(number, loaded):
     """While the program is loaded, as Python tells what it has imported: one line, exit 130."""
     words = [sys.executable, "-X", "importtime", "-m", "sealdyn.cli", "list", "--json"]

@@ -241,10 +241,11 @@ samples_per_turn = {samples}
 """
 
 
-SPEEDING = "{time = [0.0, 0.03, 0.08], value = [60.0, 60.0, 300.0]}"
+TURNING = "'300 rad/s'"
+SPEEDING = "{time = [0.0, 0.03, 0.08], value = ['60 rad/s', '60 rad/s', '300 rad/s']}"
 
 
-@pytest.fixture(scope="module", params=[(0.12, 300.0), (0.101, 300.0), (0.06, 300.0), (0.12, SPEEDING)],
+@pytest.fixture(scope="module", params=[(0.12, TURNING), (0.101, TURNING), (0.06, TURNING), (0.12, SPEEDING)],
                 ids=["flies", "turns", "hangs up", "speeds up"])  # fmt: skip
 def watched(request, tmp_path_factory):
     path = tmp_path_factory.mktemp("radial") / "x.h5"
@@ -359,7 +360,7 @@ def test_lines_of_a_summary_have_its_numbers(watched):
 def test_what_leaves_and_does_not_come_back_is_a_loss_too(tmp_path):
     """Warned of by what has left, not by what has landed; and of a shaft that is far off its place."""
     text = (
-        WATCHED.format(tension=0.02, speed=300.0, samples=72)
+        WATCHED.format(tension=0.02, speed=TURNING, samples=72)
         .replace("axial_force = 0.6", "axial_force = 60.0")
         .replace("2e-4", "2.6e-3")
     )

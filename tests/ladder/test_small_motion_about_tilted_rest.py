@@ -30,6 +30,7 @@ def slow_modes(samples, interval, count):
     return np.log(np.linalg.eigvals(step) + 0j) / interval
 
 
+@pytest.mark.core
 @pytest.mark.parametrize("name", SCENES)
 def test_a_small_motion_decays_as_the_modes_about_the_rest_say(name):
     """Before, the modes were those of aligned faces: growth rates 2 and 3 % off."""

@@ -106,7 +106,9 @@ class _Entry:
         quantity = quantity_of(kind)
         if quantity and quantity.example:
             return quantity
-        if kind is float or float in typing.get_args(kind):
+        kinds = [kind, *typing.get_args(kind), *(typing.get_origin(part) for part in typing.get_args(kind))]
+        kinds += [part.__origin__ for part in kinds if hasattr(part, "__metadata__")]
+        if quantity or float in kinds:
             return None
         raise self.wrong(f"{self.key}, which holds no number", "a key that holds a number, with or without unit")
 
