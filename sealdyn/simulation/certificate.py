@@ -23,7 +23,7 @@ from ..solvers.matrix_exponential import BETWEEN
 from ..solvers.methods import METHODS
 from .film_error import cell_error, model_error
 from .selection import Plan, choose_method
-from .verification_run import EXPLICIT, LEAST_SHARPER, OTHER, Comparison, ErrorScales, budget
+from .verification_run import EXPLICIT, LEAST_SHARPER, OTHER, UNBOUNDED, Comparison, ErrorScales, budget
 
 # The stretch (fastest periods), and what it shows, times this, is what a run has (what passes ERROR_SHARE nevertheless
 # is sharpened).
@@ -310,7 +310,7 @@ def certificate(
     measured = cells = None
     if seen:
         try:
-            work = budget(plan.method, outcome.counts)
+            work = max(UNBOUNDED, budget(plan.method, outcome.counts))
             how = {"method": plan.method, "tolerance": outcome.tolerance, "work": work}
             stiff = plan.method == "radau" and _would_take_bdf(run)
             apart, cells = (

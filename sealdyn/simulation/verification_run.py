@@ -44,6 +44,9 @@ OTHER = {"adams": "bdf", "bdf": "radau", "ida": "ida", "dop853": "radau", "radau
 EXPLICIT = ("adams", "dop853")
 # Evaluations that another run may take, over those of the one before, and how many compiled ones one in Python costs.
 BUDGET, INTERPRETED = 10.0, 30.0
+# Compiled evaluations that one may take which measures another, in any case: steps that passed over a fast motion were
+# a thirtieth of those that follow it.
+UNBOUNDED = 50_000
 
 
 class Comparison:

@@ -119,7 +119,7 @@ def test_a_gas_dam_rings_after_every_step_too_long():
     known = truth(anew, scales, times, drawn.accuracy, choose_method(reference)[0], math.inf)
     run, _, found, outcome, columns, *_ = automatic(drawn, times)
     errors = ErrorScales(run).errors(columns[: known.rows], known.columns[: known.rows])
-    assert outcome.status == "ok" and found["met"] is not False and known.rows == len(times)
+    assert outcome.status == "ok" and found["met"] and known.rows == len(times)
     assert errors.max() < drawn.accuracy
 
 

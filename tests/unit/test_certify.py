@@ -131,6 +131,7 @@ def test_solver_error_is_neither_hidden_nor_made_up(method, accuracy):
 def test_a_measuring_run_has_a_budget(method, monkeypatch):
     """Before, it might take any work, hours after a run of seconds.  What it did not see is not said to be right."""
     monkeypatch.setattr(verification_run, "BUDGET", 0.5)
+    monkeypatch.setattr(certificate, "UNBOUNDED", 0)
     ready = prepared(fms(), 60 * TURN, 1e-5)
     seen = Comparison(ready)
     outcome = solve(ready, method, 1e-5, ProgressSink(ready), seen=seen)
