@@ -8,14 +8,13 @@ prints JSON: the columns, or what is wrong with them."""
 import json
 import math
 import os
-import subprocess
 import sys
 from pathlib import Path
 
 import h5py
 import numpy as np
 
-from .files import ENDLESS, MEMORY, PATIENCE, READING_ERRORS, WORK, ArchiveError, held_in_words, must_have_an_end
+from .files import READING_ERRORS, ArchiveError, bound_this_process, held_in_words, must_have_an_end, read_apart
 
 # Bytes of a chunk: a packed one may be far larger than its file.
 MOST_CHUNK = 1 << 28
@@ -32,17 +31,13 @@ def read_columns(path: str | os.PathLike, names: tuple[str, ...], most: int) -> 
     **Source** NetCDF Climate and Forecast (CF) Metadata Conventions 1.10, sections 2.5.1, 3.1 and 8.1, and the NetCDF
     Users' Guide, attribute conventions (`_Unsigned`, `valid_range`)."""
     must_have_an_end(path)
-    # Of the folder where the program is run nothing is loaded.
-    words = [sys.executable, "-P", "-m", __name__, os.path.abspath(path), str(most), *names]
-    among = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
-    file_name = Path(path).name
+    done, file_name = read_apart(__name__, os.path.abspath(path), str(most), *names), Path(path).name
     try:
-        done = subprocess.run(words, capture_output=True, timeout=PATIENCE, env=among, stdin=subprocess.DEVNULL)
-        found = json.loads(done.stdout) if done.returncode == 0 else None
-    except (subprocess.TimeoutExpired, ValueError):
-        done, found = None, None
+        found = json.loads(done.stdout) if done and done.returncode == 0 else None
+    except ValueError:
+        found = None
     if found is None:
-        how = "does not come to an end with it" if done is None or done.returncode == ENDLESS else "crashes on it"
+        how = "crashes on it" if done else "does not come to an end with it"
         raise ArchiveError(f"{file_name}: no readable HDF5 file (HDF5 {how})")
     if "wrong" in found:
         raise ArchiveError(f"{file_name}{found['wrong']}")
@@ -51,15 +46,7 @@ def read_columns(path: str | os.PathLike, names: tuple[str, ...], most: int) -> 
 
 def main() -> int:
     """The other process."""
-    # Not everywhere.
-    try:
-        import resource
-
-        resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-        resource.setrlimit(resource.RLIMIT_CPU, (WORK, WORK + 1))
-    except (ImportError, ValueError, OSError):
-        pass
+    bound_this_process()
     path, most, *names = sys.argv[1:]
     try:
         with h5py.File(path, "r") as file:

@@ -123,15 +123,8 @@ def must_be_sound(path: str | os.PathLike) -> None:
     if identity in _sound or identity[:2] in _writing:
         return
     must_have_an_end(path)
-    # Of the folder where the program is run nothing is loaded.
-    words = [sys.executable, "-P", "-m", __name__, os.path.abspath(path)]
-    among = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
-    try:
-        found = subprocess.run(words, capture_output=True, timeout=PATIENCE, env=among, stdin=subprocess.DEVNULL)
-        endless = found.returncode == ENDLESS
-    except subprocess.TimeoutExpired:
-        endless = True
-    if endless:
+    found = read_apart(__name__, os.path.abspath(path))
+    if found is None:
         raise ArchiveError(f"{path}: damaged (HDF5 does not come to an end with it)")
     if found.returncode < 0:
         raise ArchiveError(f"{path}: damaged (HDF5 crashes on it)")
@@ -144,6 +137,29 @@ def must_be_sound(path: str | os.PathLike) -> None:
             raise ArchiveError(f"{path}: {held}")
         raise ArchiveError(f"{path}: damaged or not an archive ({lines[-1][:200]})")
     _sound.add(identity)
+
+
+def read_apart(module: str, *words: str) -> subprocess.CompletedProcess | None:
+    """What `python -m module words ...` has done, in a process of its own, on a file with which HDF5 may crash; None
+    where it does not come to an end."""
+    # Of the folder where the program is run nothing is loaded.
+    call = [sys.executable, "-P", "-m", module, *words]
+    among = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    try:
+        found = subprocess.run(call, capture_output=True, timeout=PATIENCE, env=among, stdin=subprocess.DEVNULL)
+    except subprocess.TimeoutExpired:
+        return None
+    return None if found.returncode == ENDLESS else found
+
+
+def bound_this_process() -> None:
+    """Bound memory and work of the process in which `read_apart` reads, where the system can."""
+    with suppress(ImportError, ValueError, OSError):
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        resource.setrlimit(resource.RLIMIT_CPU, (WORK, WORK + 1))
 
 
 def must_have_an_end(path: str | os.PathLike) -> None:
@@ -234,15 +250,7 @@ def _look_at_dataset(item, name):
 
 def main():
     """The other process."""
-    # Not everywhere.
-    try:
-        import resource
-
-        resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-        resource.setrlimit(resource.RLIMIT_CPU, (WORK, WORK + 1))
-    except (ImportError, ValueError, OSError):
-        pass
+    bound_this_process()
     path = Path(sys.argv[1])
     try:
         look_through(path)
@@ -276,18 +284,8 @@ def must_be_readable(file, path, known: str, what: str) -> None:
 
 # Root attributes that are words, and those that are tables or lists, kept as JSON.
 WORDS = (
-    "name",
-    "question",
-    "title",
-    "created",
-    "version",
-    "solver",
-    "program",
-    "study",
-    "scenario",
-    "status",
-    "message",
-)
+    "name", "question", "title", "created", "version", "solver", "program", "study", "scenario", "status", "message",
+)  # fmt: skip
 TABLES = {"summary": dict, "resolved": dict, "libraries": dict, "units": dict, "along": dict, "overrides": list}
 
 
@@ -438,9 +436,6 @@ def _assure(path: Path, size: int) -> None:
                     raise
         if shutil.disk_usage(path.parent).free < size - os.fstat(file.fileno()).st_size:
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(path))
-
-
-# --- files of anybody's ----------------------------------------------------------------------------------
 
 
 if __name__ == "__main__":

@@ -279,6 +279,11 @@ def resonance_speeds(values, low: float, high: float, points: int = 120, whirl: 
         order = np.argsort(away, axis=1)
         return np.take_along_axis(away, order, axis=1), np.take_along_axis(found.real, order, axis=1)
 
+    def distance(speed, mode):
+        # Where no film holds, and of fewer modes, there is none.
+        (each,), _ = distances([speed])
+        return each[mode] if mode < len(each) else np.nan
+
     speeds = np.geomspace(low, high, points)
     each, rates = distances(speeds)
     for _ in range(HALVINGS):
@@ -296,7 +301,7 @@ def resonance_speeds(values, low: float, high: float, points: int = 120, whirl: 
         a, b = speeds[k], speeds[k + 1]
         at = _mended(whirl, rates[k, mode], a, b, each[k, mode] / (each[k, mode] - each[k + 1, mode]))
         if at is None:
-            at = crossing(lambda w, mode=mode: dict(enumerate(distances([w])[0][0])).get(mode, np.nan), a, b, 1e-13)
+            at = crossing(lambda w, mode=mode: distance(w, mode), a, b, 1e-13)
         # NaN: the mode stops oscillating inside the bracket, or no film holds there, no crossing.
         found += [at] if np.isfinite(at) else []
     return found

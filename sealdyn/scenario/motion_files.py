@@ -31,13 +31,10 @@ def with_columns(
     names.  Files are looked for from `folder`; `held`: an archive's resolved tables, whose columns stand for the file
     of that name.  What is wrong with a file goes to `wrong`, keys of columns without a unit to `bare`."""
     for table in ("shaft", "housing"):
-        motion = raw.get(table, {}).get("motion") if isinstance(raw.get(table), dict) else None
-        if not isinstance(motion, dict) or not isinstance(motion.get("file"), str) or "time" in motion:
+        motion, kept = _motion(raw, table), _motion(held, table)
+        if not isinstance(motion.get("file"), str) or "time" in motion:
             continue
         file, key = motion["file"], f"{table}.motion.file"
-        above = held.get(table)
-        kept = above.get("motion") if isinstance(above, dict) else None
-        kept = kept if isinstance(kept, dict) else {}
         try:
             columns = {} if kept.get("file") == file else _columns((folder or Path()) / file)
             given = {column: values for column, (values, _) in columns.items()} or kept
@@ -51,16 +48,21 @@ def with_columns(
     return raw
 
 
+def _motion(tables: dict, table: str) -> dict:
+    """The motion of shaft or housing among tables of whatever shape; empty without one."""
+    above = tables.get(table)
+    motion = above.get("motion") if isinstance(above, dict) else None
+    return motion if isinstance(motion, dict) else {}
+
+
 def refuse_files_elsewhere(raw: dict, name: str, held: dict, asked) -> None:
     """Raises ScenarioError where an archive's scenario, its tables `raw`, names a file that the archive does not hold
     (`held`: its resolved tables): a stranger's words open none.  Keys that the user has `asked` for are his own."""
     for table in ("shaft", "housing"):
-        motion = raw.get(table, {}).get("motion") if isinstance(raw.get(table), dict) else None
+        motion, kept = _motion(raw, table), _motion(held, table)
         own = asked & {table, f"{table}.motion", f"{table}.motion.file"}
-        if own or not isinstance(motion, dict) or "time" in motion or "file" not in motion:
+        if own or "time" in motion or "file" not in motion:
             continue
-        kept = held.get(table) if isinstance(held.get(table), dict) else {}
-        kept = kept.get("motion") if isinstance(kept.get("motion"), dict) else {}
         if kept.get("file") != motion["file"] or "time" not in kept:
             key = f"{table}.motion.file"
             found = f"{quoted(motion['file'])}, which the archive does not hold"

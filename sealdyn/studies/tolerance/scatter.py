@@ -106,9 +106,8 @@ class _Entry:
         quantity = quantity_of(kind)
         if quantity and quantity.example:
             return quantity
-        kinds = [kind, *typing.get_args(kind), *(typing.get_origin(part) for part in typing.get_args(kind))]
-        kinds += [part.__origin__ for part in kinds if hasattr(part, "__metadata__")]
-        if quantity or float in kinds:
+        # A number with or without what is usual of it.
+        if quantity or any(float in (k, getattr(k, "__origin__", None)) for k in (kind, *typing.get_args(kind))):
             return None
         raise self.wrong(f"{self.key}, which holds no number", "a key that holds a number, with or without unit")
 
