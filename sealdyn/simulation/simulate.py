@@ -7,6 +7,7 @@ import platform
 import time as clock
 from collections.abc import Callable
 from contextlib import contextmanager
+from copy import deepcopy
 from dataclasses import asdict, replace
 from functools import cache
 from importlib.metadata import version
@@ -197,7 +198,7 @@ def _restart(run, writer, sink) -> tuple | None:
             int(point["leg"]),
             float(point["tau"]),
             np.array(point["y"], dtype=float),
-            point["account"],
+            deepcopy(point["account"]),
         )
         if not 0 <= leg < len(run.intervals) or y.shape != run.y0.shape or not np.all(np.isfinite([tau, *y])):
             raise ValueError("unknowns of another kind or number")

@@ -158,15 +158,15 @@ class ArchiveSink:
         )
 
     def restore(self, point: dict):
-        """Go on from a `point` that was kept."""
-        run = self.run
+        """Go on from a `point` that was kept; it stays what it is, as it may be gone on from again."""
+        run, self.start, point = self.run, point, deepcopy(point)
         run.extrema.restore(point["records"])
         run.restore_modes(point["modes"])
         self.audit.restore(point["audit"])
         for observer, name in ((self.tally, "tally"), (self.errors, "errors"), (self.seen, "seen")):
             if observer:
                 observer.restore(point[name])
-        self.logged, self.pending, self.start = int(point["logged"]), list(point["pending"]), point
+        self.logged, self.pending = int(point["logged"]), list(point["pending"])
         self.since = clock.monotonic()
 
     def write_events(self):

@@ -1,13 +1,16 @@
 """A run that goes on after it was stopped is the run: to the bit, whatever its scene and method."""
 
 import h5py
+import numpy as np
 import pytest
 from continued import SCENARIOS, differences, often, stopped
+from hard_families import one_of
 
 from sealdyn.archive import ArchiveError, last_state
 from sealdyn.archive.files import seal
 from sealdyn.archive.run import to_json
-from sealdyn.scenario.reader import read_scenario
+from sealdyn.scenario.reader import Scenario, read_scenario
+from sealdyn.scenario.tables import Run
 from sealdyn.simulation.simulate import simulate
 
 SHORT = ("run.accuracy=1e-5", "run.samples_per_turn=16")
@@ -37,6 +40,17 @@ def test_to_the_bit(name, tmp_path, monkeypatch):
     times, again = stopped(scenario, tmp_path / "part.h5", after)
     assert times == len(after) and again.status == whole.status
     assert differences(whole.archive, again.archive) == []
+
+
+@pytest.mark.parametrize("family, number", [("rubbing", 1), ("tilted_faces", 4)])
+def test_a_start_serves_more_than_once(family, number, tmp_path, monkeypatch):
+    """Drawn films that tear, stopped three times with few starts between: what is gone on from stays what it was."""
+    often(monkeypatch.setattr)
+    drawn = one_of(family, np.random.default_rng([7777, number]))
+    scenario = Scenario(drawn.scene, Run(duration=drawn.duration, accuracy=drawn.accuracy))
+    whole = simulate(scenario, tmp_path / "whole.h5")
+    times, again = stopped(scenario, tmp_path / "part.h5", [2, 3, 5])
+    assert times > 1 and differences(whole.archive, again.archive) == []
 
 
 def test_a_method_starts_anew_whoever_looks(tmp_path, monkeypatch):
