@@ -25,6 +25,8 @@ from ..solvers.integrate import COMPILED, solve
 # where a step is cut short, by decades of its length.
 PER_PERIOD, FEW, MANY, MOST, AFTER, DECADES = 12, 100, 500, 3000, 12, 7
 GOLDEN = 0.6180339887498949
+# Points of a step, where interpolation errs most: of displacements in the middle, of their slope a fifth from the ends.
+INSIDE = np.array([0.0, 0.3, 0.7])
 # Instants of a radial seal.
 RADIAL_INSTANTS = 1000
 # By how much sharper the second run is, and at least.
@@ -50,28 +52,75 @@ UNBOUNDED = 50_000
 
 
 class Comparison:
-    """An observer that keeps what is looked at of a run at instants `times` (m,) (s): columns of ErrorScales, NaN where
-    the run has not been; `failure`: how a second run ended that tells nothing, `dear`: that it gave up for its work,
-    empty if none did."""
+    """An observer that keeps what is looked at of a run: `columns` (m, k) of ErrorScales at `times` (m,) (s).  They are
+    those `asked` for, or the run's `instants` and points of its own steps, of all while they are few, then of those
+    that change most: errors die away with fast parts, at whatever time of the run that is.  `failure`: how a second run
+    ended that tells nothing, `dear`: that it gave up for its work, empty if none did."""
 
-    def __init__(self, run: RunState):
-        self.scales, self.run, self.times = ErrorScales(run), run, instants(run)
-        self.columns, self.failure, self.dear = None, "", ""
+    def __init__(self, run: RunState, asked: np.ndarray | None = None, scales=None):
+        self.scales, self.run = scales or ErrorScales(run), run
+        # Where loads jump with cells that tear and fill what counts is how seldom two runs are apart.
+        self.of_steps = asked is None and run.model.interface.film.settle is None
+        self.asked = instants(run) if asked is None else asked
+        # Rows: time, how much its step changes the motion (infinite of what was asked for), columns.
+        self.parts, self.least = [], 0.0
+        self.failure, self.dear = "", ""
+
+    @property
+    def rows(self) -> np.ndarray:
+        """All rows (m, 2 + k) so far."""
+        if len(self.parts) > 1:
+            self.parts = [np.concatenate(self.parts)]
+        return self.parts[0] if self.parts else np.empty((0, 2))
+
+    @property
+    def times(self) -> np.ndarray:
+        """Times (m,) (s) so far."""
+        return self.rows[:, 0]
+
+    @property
+    def columns(self) -> np.ndarray:
+        """Columns (m, k) there."""
+        return self.rows[:, 2:]
 
     def begin(self, segment, tau, y):
         """Nothing to do: instants are of the whole run."""
 
     def accept(self, block):
-        """Take in the instants in a block's new steps."""
+        """Take in the instants in a block's new steps, and points of these."""
         begun = block.segment.time
         until = block.t[block.end] if block.until is None else block.until
-        first, last = np.searchsorted(self.times, (begun + block.t[block.begin], begun + until))
-        if last > first:
-            taus = self.times[first:last] - begun
+        first, last = np.searchsorted(self.asked, (begun + block.t[block.begin], begun + until))
+        times, changes = self.asked[first:last], np.full(last - first, np.inf)
+        if self.of_steps:
+            points, moved = self._points(block, until)
+            order = np.argsort(np.concatenate([times, points]), kind="stable")
+            times, changes = np.concatenate([times, points])[order], np.concatenate([changes, moved])[order]
+        if len(times):
+            taus = times - begun
             found = self.scales.of(block.segment, taus, *block.at(taus), *block.film_at(taus))
-            if self.columns is None:
-                self.columns = np.full((len(self.times), found.shape[1]), np.nan)
-            self.columns[first:last] = found
+            self.parts.append(np.column_stack([times, changes, found]))
+            self._drop()
+
+    def _points(self, block, until) -> tuple[np.ndarray, np.ndarray]:
+        """Times (m,) (s) of points of a block's new steps that change the motion by more than the least that is kept,
+        and by how much they do: displacements over their scales, or rates over theirs."""
+        (q, rates), lengths = (part[block.begin : block.end + 1] for part in block.motion), self.scales.lengths
+        speeds = rates / (lengths * self.scales.rate)
+        fast = np.maximum(np.abs(speeds[1:]).max(axis=1, initial=0.0), 1.0)
+        moved = np.abs(np.diff(q, axis=0) / lengths).max(axis=1, initial=0.0)
+        moved = np.maximum(moved, np.abs(np.diff(speeds, axis=0)).max(axis=1, initial=0.0) / fast)
+        starts = block.t[block.begin : block.end]
+        widths, kept = np.append(starts[1:], until) - starts, moved > self.least
+        points = starts[kept, None] + widths[kept, None] * INSIDE
+        return block.segment.time + points.ravel(), np.repeat(moved[kept], len(INSIDE))
+
+    def _drop(self):
+        """Keep the half of the steps that change most, where there are too many."""
+        if sum(len(part) for part in self.parts) > len(self.asked) + MOST:
+            changes = self.rows[:, 1]
+            self.least = float(np.median(changes[np.isfinite(changes)]))
+            self.parts = [self.rows[changes > self.least]]
 
     def error_over_time(
         self, progress=None, stop=None, *, method: str, tolerance: float, work: float = math.inf, stiff: bool = False
@@ -107,23 +156,22 @@ class Comparison:
 
     def _apart(self, again, method, tolerance, progress, stop, work) -> np.ndarray | None:
         """How far (m,) this run is from another one, done by `method` with `tolerance`, at each instant."""
-        other = type(self)(again)
-        other.times = self.times
+        other = type(self)(again, self.times)
         outcome = solve(
             again, method, again.model.accuracy, ProgressSink(again, progress, stop), tolerance=tolerance, seen=other,
             work=work / price(method),
         )  # fmt: skip
         if outcome.status == Status.INTERRUPTED:
             raise Enough
-        if self.columns is None or other.columns is None:
+        count = len(other.times)
+        if not count:
             return None
         if outcome.cause == Cause.TOO_DEAR:
             self.dear = outcome.message
-        both = ~(np.isnan(self.columns) | np.isnan(other.columns)).any(axis=1)
+        both = np.flatnonzero(~np.isnan(self.columns[:count] + other.columns).any(axis=1))
         found = np.full(len(self.times), np.nan)
-        if both.any():
-            errors = self.scales.errors(self.columns[both], other.columns[both])
-            found[both] = self._largest(errors)
+        if len(both):
+            found[both] = self._largest(self.scales.errors(self.columns[both], other.columns[both]))
         return self._ended(outcome, again, found)
 
     def _largest(self, errors: np.ndarray) -> np.ndarray:
@@ -137,32 +185,27 @@ class Comparison:
             found[self.times > again.end_time(outcome.segment, outcome.tau)] = np.inf
         return found
 
-    def state(self) -> dict | None:
-        """What a continued run needs: the columns so far, their bytes as text."""
-        if self.columns is None:
-            return None
-        kept = self.columns[~np.isnan(self.columns[:, 0])]
-        return {"count": len(kept), "columns": base64.b64encode(kept.tobytes()).decode()}
+    def state(self) -> dict:
+        """What a continued run needs: the rows so far, their bytes as text."""
+        rows = base64.b64encode(self.rows.tobytes()).decode()
+        return {"count": len(self.rows), "rows": rows, "least": self.least}
 
-    def restore(self, state: dict | None):
+    def restore(self, state: dict):
         """Go on from `state`."""
-        if state and state["count"]:
-            kept = np.frombuffer(base64.b64decode(state["columns"])).reshape(state["count"], -1)
-            self.columns = np.full((len(self.times), kept.shape[1]), np.nan)
-            self.columns[: len(kept)] = kept
+        if state["count"]:
+            self.parts = [np.frombuffer(base64.b64decode(state["rows"])).reshape(state["count"], -1)]
+        self.least = float(state["least"])
 
 
 class RadialComparison(Comparison):
     """The same of a radial seal: displacements and loads of the followers."""
 
-    def __init__(self, run):
+    def __init__(self, run, asked: np.ndarray | None = None):
         # Kernels of radial seals are loaded for these only.
         from ..radial_seals.observers import RadialErrorScales
 
-        self.run, self.scales, self.failure = run, RadialErrorScales(run.model), ""
-        self.dear = ""
-        self.times = np.sort(np.mod(GOLDEN * np.arange(1, RADIAL_INSTANTS + 1), 1.0)) * run.duration
-        self.columns = None
+        evenly = np.sort(np.mod(GOLDEN * np.arange(1, RADIAL_INSTANTS + 1), 1.0)) * run.duration
+        super().__init__(run, evenly if asked is None else asked, RadialErrorScales(run.model))
 
     def error_over_time(
         self, progress=None, stop=None, *, method: str, tolerance: float, work: float = math.inf, stiff: bool = False

@@ -2,13 +2,14 @@
 
     OPENBLAS_NUM_THREADS=1 python tests/benchmark/honesty.py [scenes] [figure.png] [processes] [family] [seed] [budget]
 
-A figure's numbers go beside it (figure.json), for the gallery's page (gallery.py); without one ("-") no costs are
-found.  Random scenes of all that the program accepts, seeded (tests/families.py: "wide", "gas", "gas_reynolds",
-"reynolds", "patterned"; tests/hard_families.py: "runup", "rubbing", "tilted_faces"); the truth of each, whose tilts are
-unknowns whatever tilts it, by two other references (tests/judge.py), of every tenth of liquids by equations that share
-nothing with the program (tests/own_words.py), of gas films that store by four times as many cells besides, up to the
-time where they agree within accuracy/100; of cavitating films by their method twice, far sharper, up to the time where
-they agree within accuracy/10, loads and flows at 99 % of the instants, as the certificate has them.
+A figure's numbers go beside it (figure.json), for the gallery's page (gallery.py); without a figure (numbers.json, or
+"-") no costs are found.  Random scenes of all that the program accepts, seeded (tests/families.py: "wide", "gas",
+"gas_reynolds", "reynolds", "patterned"; tests/hard_families.py: "runup", "rubbing", "tilted_faces", or "every" in
+turn); the truth of each, whose tilts are unknowns whatever tilts it, by two other references (tests/judge.py), of every
+tenth of liquids by equations that share nothing with the program (tests/own_words.py), of gas films that store by four
+times as many cells besides, up to the time where they agree within accuracy/100; of cavitating films by their method
+twice, far sharper, up to the time where they agree within accuracy/10, loads and flows at 99 % of the instants, as the
+certificate has them.
 `budget` (s) bounds the processor time of each reference; what takes longer is not judged.
 Scenes of which less than a turn is known are drawn anew.
 A run is done as `sealdyn run` does it: film, method and tolerance chosen, certified, done again where it is not exact
@@ -30,7 +31,7 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-from hard_families import one_of
+from hard_families import FAMILIES, one_of
 from judge import (
     Instants,
     TooLong,
@@ -147,7 +148,7 @@ def judge(number, family="wide", seed=SEED, budget=None, costs=True):
     """What one scene shows: a dict, with `why` where it is no scene or cannot be judged; `budget` (s) of processor time
     of each reference, `costs`: found too."""
     random = np.random.default_rng([seed, number])
-    drawn = one_of(family, random)
+    drawn = one_of(FAMILIES[number % len(FAMILIES)] if family == "every" else family, random)
     row = {"number": number, "words": drawn.words, "accuracy": drawn.accuracy, "smooth": drawn.smooth}
     highest = drawn.scene
     if highest.film.gas is None and highest.film.model != "reynolds":
@@ -228,8 +229,9 @@ def main():
     family = sys.argv[4] if len(sys.argv) > 4 else "wide"
     seed = int(sys.argv[5]) if len(sys.argv) > 5 else SEED
     budget = float(sys.argv[6]) if len(sys.argv) > 6 else None
-    figure = Path(sys.argv[2]) if len(sys.argv) > 2 and sys.argv[2] != "-" else None
-    judged = partial(judge, family=family, seed=seed, budget=budget, costs=figure is not None)
+    path = Path(sys.argv[2]) if len(sys.argv) > 2 and sys.argv[2] != "-" else None
+    drawn = path is not None and path.suffix == ".png"
+    judged = partial(judge, family=family, seed=seed, budget=budget, costs=drawn)
     rows, dropped, number = [], Counter(), 0
     with ProcessPoolExecutor(processes) as pool:
         while len(rows) < wanted:
@@ -241,25 +243,39 @@ def main():
                 elif len(rows) < wanted:
                     rows.append(row)
                     print(said(row), flush=True)
+                    if path:
+                        # After each scene: a run that is ended leaves what it has found.
+                        found = json.dumps(numbers(rows, dropped, seed), indent=1)
+                        path.with_suffix(".json").write_text(found + "\n")
             number += count
+    print(json.dumps(numbers(rows, dropped, seed), indent=1))
+    if drawn:
+        draw(rows, path)
+
+
+def numbers(rows, dropped, seed) -> dict:
+    """What the rows of all scenes show together."""
     verdicts = [told(row) for row in rows]
-    honest = sum(most <= 1.0 and not row["contacts_wrong"] for row, (most, _) in zip(rows, verdicts, strict=True))
-    spoken = sum(
-        (most > 1.0 or row["contacts_wrong"] > 0) and said for row, (most, said) in zip(rows, verdicts, strict=True)
-    )
+    right = [most <= 1.0 and not row["contacts_wrong"] for row, (most, _) in zip(rows, verdicts, strict=True)]
+    spoken = [said for _, said in verdicts]
     claimed = [
         row["estimated"] / (most * row["accuracy"])
         for row, (most, said) in zip(rows, verdicts, strict=True)
         if not said and most > 0.01
     ]
     costs = np.array([row["cost"] / row["best"] for row in rows if math.isfinite(row["best"])])
-    numbers = {
+    return {
         "seed": seed,
         "scenes": len(rows),
-        "honest": honest,
-        "spoken": spoken,
-        "wrong": len(rows) - honest - spoken,
-        "over_asked": sum(said for _, said in verdicts),
+        "honest": sum(right),
+        "spoken": sum(said and not well for well, said in zip(right, spoken, strict=True)),
+        "wrong": sum(not said and not well for well, said in zip(right, spoken, strict=True)),
+        "over_asked": sum(spoken),
+        # Said not to be as exact as asked, and is.
+        "false_alarms": sum(
+            well and (row["met"] is False or row["status"] == "inaccurate")
+            for well, row in zip(right, rows, strict=True)
+        ),
         "dropped": dict(dropped),
         "estimate_over_error": [min(claimed), *np.quantile(claimed, [0.1, 0.5, 0.9]).tolist()] if claimed else [],
         "asked": [min(row["accuracy"] for row in rows), max(row["accuracy"] for row in rows)],
@@ -269,10 +285,6 @@ def main():
         "contacts": sum(row["contacts"] for row in rows),
         "contacts_wrong": sum(row["contacts_wrong"] for row in rows),
     }
-    print(json.dumps(numbers, indent=1))
-    if figure:
-        draw(rows, figure)
-        figure.with_suffix(".json").write_text(json.dumps(numbers, indent=1) + "\n")
 
 
 def draw(rows, path):

@@ -120,7 +120,7 @@ def test_solver_error_is_neither_hidden_nor_made_up(method, accuracy):
     ready = prepared(fms(), 20 * TURN, accuracy)
     tolerance = tolerance_for(method, accuracy, ready.memory)
     seen, apart = measured(ready, method, tolerance)
-    sharp = Comparison(ready.anew())
+    sharp = Comparison(ready.anew(), seen.times)
     assert solve(sharp.run, "dop853", accuracy, ProgressSink(ready), tolerance=1e-12, seen=sharp).status == "ok"
     true = float(seen.scales.errors(seen.columns, sharp.columns).max())
     estimate = solver_error(method, tolerance, apart)
