@@ -29,8 +29,9 @@ from ...scene.rings import STATOR
 from ...scene.scene import Initial, Scene, SceneError
 from ...scene.variants import frozen_at_start, unforced
 from ...simulation.selection import choose_method
-from ...solvers.contract import MANY, Enough, Recorder, SolverFailure, Status
-from ...solvers.integrate import solve
+from ...simulation.verification_run import price
+from ...solvers.contract import Cause, Recorder, SolverFailure, Status
+from ...solvers.integrate import Outcome, solve
 
 # Motion of the housing (z, tilt about x, tilt about y), and which modes it excites.
 SHAPES = {"axial": (1.0, 0.0, 0.0), "angular": (0.0, 1.0, 0.0)}
@@ -48,9 +49,9 @@ ABOVE_ROUNDING = 1e4
 # The way to touch, in the linear one: where it begins, first and last step (factors), where it ends.
 BEGIN, STEP, LAST, MOST = 0.5, 1.25, 1.01, 10.0
 # Acceleration (m/s^2) of linear touch, of angular vibration at the outer edge, beyond which nobody shakes a seal;
-# tilt (rad) of the housing beyond which tilts are not small; steps that a tone's small motion and its way to touch may
-# cost.
-BEYOND, TILTED, MOST_SMALL, MOST_WORK = 1000.0 * g, 0.1, 2_000_000, 500_000
+# tilt (rad) of the housing beyond which tilts are not small; compiled evaluations that a tone may cost in all, a few
+# seconds.
+BEYOND, TILTED, MOST_WORK = 1000.0 * g, 0.1, 400_000
 # Periods that a transient may take, and how often it may take more than expected.
 LONGEST, AGAIN = 1000, 4
 
@@ -149,20 +150,6 @@ def sizes(motion) -> tuple[float, float]:
 # --- in time -----------------------------------------------------------------------------------------------
 
 
-class Bounded(Recorder):
-    """A Recorder that ends its run after `most` steps."""
-
-    def __init__(self, most: int, interval: float | None = None):
-        super().__init__(interval)
-        self.left = most
-
-    def state(self, segment, tau, y):
-        """Raises Enough where the steps are used up, by the least that the solver hands over at a time."""
-        self.left -= MANY
-        if self.left < 0:
-            raise Enough
-
-
 def measured(scene, point: dict) -> dict:
     """A tone of the housing in time on aligned faces, `point` {direction, frequency (Hz)}: `gain` of small motion and
     its `deviation` from linear theory, phase and all, as a share; `touch` (m/s^2, rad/s^2), the acceleration at which
@@ -175,7 +162,7 @@ def measured(scene, point: dict) -> dict:
     if periods > LONGEST:
         raise ValueError(f"the transient takes {periods} periods to die out, more than {LONGEST}")
     foretold = seal.gap_motion(direction, frequency)
-    seen = _small_motion(seal, direction, frequency, SMALL * linear, periods)
+    seen, work = _small_motion(seal, direction, frequency, SMALL * linear, periods)
     place = 0 if direction == "axial" else 1
     row = {"gain": sizes(seen)[place],
            "deviation": float(np.linalg.norm(seen - foretold) / np.linalg.norm(foretold)),
@@ -187,21 +174,29 @@ def measured(scene, point: dict) -> dict:
     if direction == "angular" and linear > TILTED * (2 * math.pi * frequency) ** 2:
         return row | {"said": f"a housing that tilts by more than {TILTED:g} rad is not followed to touch in time"}
     periods = math.ceil(-math.log(LEFT_OF_STEP) * frequency / decay) + 2
-    ratio, said = _touch(seal, direction, frequency, linear, periods)
+    ratio, said = _touch(seal, direction, frequency, linear, periods, MOST_WORK - work)
     return row | {"touch": None if ratio is None else ratio * linear, "ratio": ratio, "said": said}
 
 
-def _small_motion(seal: ShakenSeal, direction, frequency, acceleration, periods) -> np.ndarray:
+def _bounded(run, accuracy, sink, left: float) -> tuple[Outcome, float]:
+    """How a run ends that gives up where so many compiled evaluations are `left`, and what it took of them."""
+    method = choose_method(run)[0]
+    outcome = solve(run, method, accuracy, sink, work=left / price(method))
+    return outcome, outcome.counts.rhs * price(method)
+
+
+def _small_motion(seal: ShakenSeal, direction, frequency, acceleration, periods) -> tuple[np.ndarray, float]:
     """Complex amplitude (3,) of the gap per unit motion of the housing in the last period of a run, which begins with
-    half the motion that linear theory foretells."""
+    half the motion that linear theory foretells; and the evaluations it took."""
     period, accuracy = 1.0 / frequency, _accuracy(seal, direction, frequency, acceleration, periods)
     run = RunState(Model(seal.shaken(direction, frequency, acceleration), accuracy), periods * period)
     with_housing = _carried(seal, run.model, direction, frequency, acceleration)
     run.y0 = 0.5 * (run.steady_start() + with_housing)
-    recorder = Bounded(MOST_SMALL, period / PER_PERIOD)
-    outcome = solve(run, choose_method(run)[0], accuracy, recorder)
-    if outcome.status == Status.INTERRUPTED:
-        raise ValueError(f"small motion takes more than {MOST_SMALL} steps")
+    recorder = Recorder(period / PER_PERIOD)
+    outcome, cost = _bounded(run, accuracy, recorder, MOST_WORK)
+    if outcome.cause == Cause.TOO_DEAR:
+        reached = run.end_time(outcome.segment, outcome.tau) * frequency
+        raise ValueError(f"small motion takes more than {MOST_WORK} evaluations: {reached:.0f} of {periods} periods")
     if outcome.status != Status.OK:
         raise ValueError(outcome.message)
     times, q, rates = (part[-PER_PERIOD:] for part in recorder.arrays())
@@ -211,7 +206,7 @@ def _small_motion(seal: ShakenSeal, direction, frequency, acceleration, periods)
     )
     turned = np.exp(-2j * math.pi * frequency * times)
     # The housing's displacement is minus its acceleration over w^2.
-    return 2.0 * (turned @ gaps) / PER_PERIOD / (-acceleration / (2 * math.pi * frequency) ** 2)
+    return 2.0 * (turned @ gaps) / PER_PERIOD / (-acceleration / (2 * math.pi * frequency) ** 2), cost
 
 
 def _accuracy(seal: ShakenSeal, direction, frequency, acceleration, periods) -> float:
@@ -225,19 +220,19 @@ def _accuracy(seal: ShakenSeal, direction, frequency, acceleration, periods) -> 
     return min(max(ACCURACY, ABOVE_ROUNDING * rounding), ROUGHLY)
 
 
-def _touch(seal: ShakenSeal, direction, frequency, linear, periods) -> tuple[float | None, str]:
+def _touch(seal: ShakenSeal, direction, frequency, linear, periods, left) -> tuple[float | None, str]:
     """The acceleration at which the faces touch in the motion that repeats, over that of linear theory, or None; and
-    why, if there is none.  Acceleration grows in steps, ever smaller ones where the film closes; each run begins where
-    the one before ended, so that no transient of its own closes it."""
-    ratio, step, good, y, work = BEGIN, STEP, 0.0, None, 0
+    why, if there is none, or no more evaluations are `left`.  Acceleration grows in steps, ever smaller ones where the
+    film closes; each run begins where the one before ended, so that no transient of its own closes it."""
+    ratio, step, good, y = BEGIN, STEP, 0.0, None
     while ratio <= MOST:
         try:
-            end, cost = _run(seal, direction, frequency, (good * linear, ratio * linear), periods, y, MOST_WORK - work)
+            end, cost = _run(seal, direction, frequency, (good * linear, ratio * linear), periods, y, left)
         except SolverFailure:
             return None, f"the solver gave up at {ratio:.3g} times the linear acceleration, without a touch"
-        work += cost
-        if work > MOST_WORK:
-            return None, f"touch was not reached with {MOST_WORK} steps"
+        left -= cost
+        if left <= 0.0:
+            return None, f"no touch up to {good:.3g} times the linear acceleration, with {MOST_WORK} evaluations"
         if end is not None:
             good, y = ratio, end
         elif y is None:
@@ -263,23 +258,24 @@ def _carried(seal: ShakenSeal, model, direction, frequency, acceleration) -> np.
     return y
 
 
-def _run(seal: ShakenSeal, direction, frequency, accelerations, periods, y, most) -> tuple[np.ndarray | None, int]:
+def _run(seal: ShakenSeal, direction, frequency, accelerations, periods, y, most) -> tuple[np.ndarray | None, float]:
     """Unknowns (size,) at the end of a run whose last two periods are alike, None if the faces touch in them or the
-    film closes; and the steps it cost, given up beyond `most`.  It begins with the gap of `y`, the end of a run at the
-    first of two `accelerations`, or, without, with what linear theory foretells, and is shaken with the second."""
+    film closes; and the evaluations it cost, given up beyond `most`.  It begins with the gap of `y`, the end of a run
+    at the first of two `accelerations`, or, without, with what linear theory foretells, and is shaken with the second.
+    """
     before, acceleration = accelerations
     model, period = Model(seal.shaken(direction, frequency, acceleration), ROUGHLY), 1.0 / frequency
     if y is not None:
         y = y + _carried(seal, model, direction, frequency, acceleration - before)
-    cost = 0
+    cost = 0.0
     for _ in range(AGAIN):
         run = RunState(model, periods * period)
         run.y0 = run.steady_start() if y is None else y
         end = run.duration
         run.extrema.windows[1:] = [[end - period, end], [end - 2 * period, end - period]]
-        outcome = solve(run, choose_method(run)[0], ROUGHLY, Bounded(most - cost))
-        cost += outcome.counts.steps
-        if outcome.status == Status.COLLAPSED or cost > most:
+        outcome, spent = _bounded(run, ROUGHLY, Recorder(), most - cost)
+        cost += spent
+        if outcome.status == Status.COLLAPSED or cost >= most:
             return None, cost
         if outcome.status != Status.OK:
             raise SolverFailure(outcome.message)
