@@ -102,6 +102,14 @@ def test_equilibrium_is_where_film_and_asperities_carry_the_closing_force(pump, 
     assert root["stiffness"] == pytest.approx(-slope, rel=1e-6)
 
 
+@pytest.mark.parametrize("pressure", ["1 bar", "3.3 bar", "12.7 bar"])
+def test_a_film_between_equal_pressures_carries_nothing(pressure):
+    """Not what rounding leaves of the film's force less the pressure all around."""
+    same = [f"film.{side}_pressure={pressure}" for side in ("inner", "outer")]
+    (root,) = equilibrium.run(parse_scenario(PUMP, "pump", same), equilibrium.Settings(points=11), None)["roots"]
+    assert root["load_support"] == 0.0 and root["contact_force"] == pytest.approx(100.0, rel=1e-6)
+
+
 def test_a_run_settles_at_the_equilibrium_of_the_study(pump, clearance):
     """Started 0.05 um further apart: in 0.2 s it is back."""
     scene = with_values(pump, {"rotor.runout": 0.0, "initial.stator.z": "0.05 um"}).scene
