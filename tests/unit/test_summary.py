@@ -217,6 +217,15 @@ def test_a_margin_ends_where_the_film_is_laminar_no_more(reynolds, ends):
         assert found["contact_margin"] == pytest.approx(min(room), rel=1e-6)
 
 
+@pytest.mark.parametrize("film, met", [("radial", True), ("linear", False)])
+def test_what_is_said_of_the_accuracy_is_printed_once(film, met, tmp_path):
+    """As a line, or where it is not met as a warning: it was both."""
+    result = sealdyn.run(SEAL, [f"film.model={film}", "run.turns=1", "run.accuracy=1e-4"], out=tmp_path / "a.h5")
+    found = result.summary["certificate"]
+    assert found["met"] is met
+    assert "\n".join(lines("a", run_answer(result.summary))).count(found["said"]) == 1
+
+
 def test_asperities_that_touch_without_forcing_leave_no_margin():
     scenario = read_scenario(SCENARIOS / "run_in.toml", ["run.turns=0.5", "run.accuracy=1e-3"])
     summary = simulate_in_memory(scenario, speeds=True)
