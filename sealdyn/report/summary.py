@@ -178,6 +178,7 @@ def _settled_throughout(summary) -> bool:
 MARGIN_ENDS = {
     "small tilts": "not limited by touch within small tilts, which are over at",
     "laminar film": "not limited by touch while the film is laminar, which is over at",
+    "slow gas": "not limited by touch while the gas is slow, which is over at",
 }
 
 

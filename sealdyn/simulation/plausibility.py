@@ -2,6 +2,7 @@
 unit that no seal has, and the size of a run, reckoned before it hurts."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise, product
 from typing import get_args
@@ -104,6 +105,37 @@ def couette_number(model, radius: float, thickness: float) -> float:
     return couette_reynolds(density, min(points(viscosity_of(film))), sliding * radius, thickness)
 
 
+def leakage_numbers(model, leakage: float) -> tuple[float, float]:
+    """Reynolds number of a leakage (m^3/s, of a gas at normal conditions) between the aligned faces, and Mach number
+    with which a gas leaves them at the low pressure; NaN of coefficients of one's own and of a film that knows the
+    gas's inertia, and the latter of a liquid."""
+    film = model.scene.film
+    if film.gas is None:
+        flow = leakage / (2.0 * math.pi * film.inner_radius)
+        known = _is_liquid(model)
+        return poiseuille_reynolds(film.density, min(points(film.viscosity)), flow) if known else math.nan, math.nan
+    gas, temperature = gas_of(film), min(points(film.temperature))
+    sound = math.sqrt(gas.heat_ratio * gas.gas_constant * temperature)
+    density = min(*points(film.inner_pressure), *points(film.outer_pressure)) / (gas.gas_constant * temperature)
+    outer_is_high = initially(film.outer_pressure) >= initially(film.inner_pressure)
+    radius, h = model.aligned_gaps()[0 if outer_is_high else -1]
+    flow = density_of(film) * abs(leakage) / (2.0 * math.pi * radius)
+    if model.interface.name == "gas_dam" or h <= 0.0:
+        return math.nan, math.nan
+    return 2.0 * flow / min(points(viscosity_of(film))), flow / (density * h * sound)
+
+
+def room_to_open(model, leakage: float, radius: float, thickness: float) -> Iterator[tuple[float, str]]:
+    """By how much (m) a film `thickness` (m) at a radius (m) may open until it is no "laminar film" or no "slow gas"
+    any more, its aligned `leakage` (m^3/s) growing with the cube; nothing of what it is not before it opens."""
+    through, mach = leakage_numbers(model, leakage)
+    sliding = couette_number(model, radius, thickness)
+    grown = (sliding, 1, LAMINAR, "laminar film"), (through, 3, LAMINAR, "laminar film"), (mach, 2, FAST, "slow gas")
+    for number, power, most, name in grown:
+        if 0.0 < number <= most:
+            yield thickness * ((most / number) ** (1.0 / power) - 1.0), name
+
+
 def _units(scenario, model):
     """Bare numbers that no seal has, faces a millimetre apart."""
     yield from (Caution(Concern.UNITS, said) for said in unit_warnings(scenario))
@@ -166,7 +198,6 @@ def _heat(rise, flux):
 
 def _turbulence(model, leakage):
     """Reynolds numbers of the aligned film at the fastest sliding and the least viscosity."""
-    film, viscosity = model.scene.film, min(points(model.scene.film.viscosity))
     gaps = [gap for gap in model.aligned_gaps() if gap[1] > 0.0]
     numbers = [(couette_number(model, r, h), r) for r, h in gaps]
     (first, inner), (most, radius) = numbers[0], max(numbers)
@@ -175,7 +206,7 @@ def _turbulence(model, leakage):
         found = f"Couette Reynolds number {first:.0f} at r = {inner * 1e3:.4g} mm"
         found += f", {most:.0f} at {radius * 1e3:.4g} mm" if radius != inner else ""
         yield Caution(Concern.TURBULENCE, f"perhaps turbulent: {found}; {doubt}")
-    through = poiseuille_reynolds(film.density, viscosity, leakage / (2.0 * math.pi * film.inner_radius))
+    through, _ = leakage_numbers(model, leakage)
     if math.isfinite(through) and through > LAMINAR:
         found = f"Poiseuille Reynolds number {through:.0f} of the leakage"
         yield Caution(Concern.TURBULENCE, f"perhaps turbulent: {found}; {doubt}")
@@ -184,24 +215,15 @@ def _turbulence(model, leakage):
 def _gas_flow(model, leakage):
     """A gas film that is isothermal and without inertia where the gas is fast: Mach number of the aligned film at the
     low pressure, with the mass flow of the mean leakage (m^3/s at normal conditions)."""
-    film = model.scene.film
-    gas, temperature = gas_of(film), min(points(film.temperature))
-    sound = math.sqrt(gas.heat_ratio * gas.gas_constant * temperature)
-    low = min(*points(film.inner_pressure), *points(film.outer_pressure))
-    density, viscosity = low / (gas.gas_constant * temperature), min(points(viscosity_of(film)))
-    outer_is_high = initially(film.outer_pressure) >= initially(film.inner_pressure)
-    radius, h = model.aligned_gaps()[0 if outer_is_high else -1]
-    flow = density_of(film) * leakage / (2.0 * math.pi * radius)
-    if model.interface.name != "gas_dam" and math.isfinite(flow) and h > 0.0:
-        mach = flow / (density * h * sound)
-        if mach > FAST:
-            why = 'this film has no inertia of the gas and no choking; film.model = "gas_dam" has both'
-            yield Caution(Concern.CHOKING, f"the gas would leave the faces at a Mach number of {mach:.3g}: {why}")
-        if 2.0 * flow / viscosity > LAMINAR:
-            found = f"Reynolds number {2.0 * flow / viscosity:.0f} of the leakage"
-            yield Caution(Concern.TURBULENCE, f"perhaps turbulent: {found}; the film counts as laminar")
+    through, mach = leakage_numbers(model, leakage)
+    if mach > FAST:
+        why = 'this film has no inertia of the gas and no choking; film.model = "gas_dam" has both'
+        yield Caution(Concern.CHOKING, f"the gas would leave the faces at a Mach number of {mach:.3g}: {why}")
+    if through > LAMINAR:
+        found = f"Reynolds number {through:.0f} of the leakage"
+        yield Caution(Concern.TURBULENCE, f"perhaps turbulent: {found}; the film counts as laminar")
     if model.interface.name == "gas_dam":
-        yield from _wide_dam(film)
+        yield from _wide_dam(model.scene.film)
     thickest, at = max((h, r) for r, h in model.aligned_gaps())
     most = couette_number(model, at, thickest)
     if most > LAMINAR:

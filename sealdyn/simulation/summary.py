@@ -21,7 +21,7 @@ from ..scene.radial import RadialScene
 from ..scene.rings import RING_NAMES, ROTOR, SMALL_TILT, STATOR
 from ..solvers.contract import Status
 from ..solvers.energy_audit import missing_energy
-from .plausibility import LAMINAR, cautions, couette_number, unit_warnings
+from .plausibility import cautions, room_to_open, unit_warnings
 from .stability import found_alone, no_stability, stability
 
 # What ends the growth of the forcing, unless tilts are small no more.
@@ -372,8 +372,8 @@ def _answers(segment, at, linear):
 def _contact_margin(model, at, linear, tilt, answers):
     """Factor by which the forcing may grow in linear theory, and what ends it: at "touch" the gap closes at an edge,
     to the height of the asperities where there are any (0 where they touch without forcing), or before "small tilts"
-    are over (SMALL_TILT), or a "laminar film" at the edge that opens; one that is not laminar at rest has a caution
-    instead.  Unknown of wavy faces, of aligned ones that press with a moment, and of a sweep, which is over
+    are over (SMALL_TILT), or a "laminar film" or a "slow gas" at the edge that opens; one that is neither at rest has a
+    caution instead.  Unknown of wavy faces, of aligned ones that press with a moment, and of a sweep, which is over
     in the last segment."""
     if waves_of(model.scene) or model.scene.housing.sweeps:
         return math.nan, None
@@ -387,13 +387,13 @@ def _contact_margin(model, at, linear, tilt, answers):
         return math.nan, None
     most, _, closing, _ = tilt
     ends, tilted = [(math.inf, None)], modes.tilt_bound(answers())
+    # Without it the margin is that of touch; that it is missing is told beside it.
+    leakage = found_alone([], "leakage", lambda: _aligned(model, at)[0]) or math.nan
     for gap, radius in ((inner, face[0]), (outer, face[1])):
-        reach, each = radius * most + closing, couette_number(model, radius, 1.0)
-        if reach > 0.0:
+        if (reach := radius * most + closing) > 0.0:
             ends.append(((gap - height) / reach, TOUCHED))
             # An edge opens by as much as it closes.
-            if each * gap <= LAMINAR and each > 0.0:
-                ends.append(((LAMINAR / each - gap) / reach, "laminar film"))
+            ends += [(room / reach, name) for room, name in room_to_open(model, leakage, radius, gap)]
     if tilted > 0.0:
         ends.append((SMALL_TILT / tilted, "small tilts"))
     return min(ends, key=lambda end: end[0])

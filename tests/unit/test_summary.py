@@ -1,5 +1,6 @@
 """What a summary advises."""
 
+import math
 import re
 from pathlib import Path
 
@@ -15,6 +16,7 @@ from sealdyn.report.charts import overview
 from sealdyn.report.summary import run_answer
 from sealdyn.report.text import line_words, lines
 from sealdyn.scenario.reader import parse_scenario, read_scenario
+from sealdyn.scene.gas import density_of, gas_of
 from sealdyn.scene.rings import SMALL_TILT
 from sealdyn.simulation.simulate import prepare_run, simulate_in_memory
 
@@ -215,6 +217,34 @@ def test_a_margin_ends_where_the_film_is_laminar_no_more(reynolds, ends):
         room = [(limit / r - h) / (r * theory["relative_max"] + theory["axial_closing"])
                 for r, h in zip(edges, gaps, strict=True)]  # fmt: skip
         assert found["contact_margin"] == pytest.approx(min(room), rel=1e-6)
+
+
+@pytest.mark.parametrize("speed, ends", [(0.2, "slow gas"), (0.06, "touch"), (0.4, "touch")])
+def test_a_margin_ends_where_the_gas_is_slow_no_more(speed, ends):
+    """Mach number of the aligned leakage, which grows with the square of what an edge opens to; one beyond 0.3 at rest
+    is a caution, a slow one ends nothing."""
+    short = ["run.turns=0.05", "run.accuracy=0.1", "stator.misalignment=0"]
+    path = SCENARIOS / "gas_reynolds_reference.toml"
+    whole = read_scenario(path, short)
+    film, gas = whole.scene.film, gas_of(whole.scene.film)
+
+    def mach(found):
+        low = min(film.inner_pressure, film.outer_pressure)
+        radius = film.inner_radius if film.outer_pressure > film.inner_pressure else film.outer_radius
+        sound = math.sqrt(gas.heat_ratio * gas.gas_constant * film.temperature)
+        flow = found["film"]["leakage"] * density_of(film) / (2.0 * math.pi * radius)
+        return flow * gas.gas_constant * film.temperature / low / found["film"]["clearance"] / sound
+
+    # Of faces alike in shape.
+    grown = math.sqrt(speed / mach(simulate_in_memory(whole)))
+    thick, coning = grown * film.clearance, grown * film.coning
+    found = simulate_in_memory(read_scenario(path, [*short, f"film.clearance={thick}", f"film.coning={coning}"]))
+    assert mach(found) == pytest.approx(speed, rel=0.02) and found["contact_margin_limit"] == ends
+    if ends != "touch":
+        theory = found["closed_form"]
+        reach = film.inner_radius * theory["relative_max"] + theory["axial_closing"]
+        opened = thick * (math.sqrt(0.3 / mach(found)) - 1.0) / reach
+        assert found["contact_margin"] == pytest.approx(opened, rel=1e-6)
 
 
 @pytest.mark.parametrize("film, met", [("radial", True), ("linear", False)])
