@@ -15,6 +15,7 @@ from time import monotonic
 
 from .numerics.interruption import CODE, Interruption, deafen, stop_children
 from .status import Status
+from .units import cut, printable
 
 DONE, BAD_INPUT, COLLAPSED, FAILED, CHECK_FAILED, INTERRUPTED = 0, 2, 3, 4, 5, CODE
 EXIT = {
@@ -33,12 +34,6 @@ MEMORY = 1_000_000_000
 LONGEST = 1000
 # New objects after which Python looks for cyclic garbage: imports and compilation make many and leave little.
 GARBAGE = 100_000
-
-
-def printable(words: str, kept: str = "") -> str:
-    """Words without what a terminal would obey or cannot show, but for the characters `kept`: codes that move its
-    cursor or colour it, line breaks, directions of script, halves of characters; each is told as Python writes it."""
-    return "".join(c if c.isprintable() or c in kept else repr(c)[1:-1] for c in words)
 
 
 def say(*lines, cells: bool = False, error: bool = False):
@@ -172,7 +167,7 @@ class Progress:
             moved = f"t = {done:.4g}{left}"
             words = moved if self.runs == 1 else f"run {self.runs}: {moved}"
         self.moved = monotonic() if done != self.now["completed"] else self.moved
-        self.now = {"completed": done, "total": end, "words": words}
+        self.now = {"completed": done, "total": end, "words": printable(words)}
         if self.bar:
             if again:
                 self.task = self._line(self.bar)
@@ -244,7 +239,7 @@ class Progress:
             if self.timer.finished.is_set():
                 return
             bar = Progress(
-                TextColumn("{task.fields[words]}"),
+                TextColumn("{task.fields[words]}", markup=False),
                 BarColumn(),
                 TextColumn("{task.percentage:>3.0f}%"),
                 TimeElapsedColumn(),
@@ -393,8 +388,6 @@ def _break_off(as_json: bool, out: int):
 
 
 def _refuse(status: str, message: str, as_json: bool, errors=()):
-    from .units import cut
-
     lines = [cut(" ".join(str(said).split()), LONGEST) for said in errors or [message]]
     if not as_json:
         say(*lines, error=True)

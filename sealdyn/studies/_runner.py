@@ -26,7 +26,9 @@ from ..scene.contact import waves_of
 from ..scene.radial import RadialScene
 from ..scene.scene import SceneError
 from ..scene.symmetry import face_orders, faces_tilt
+from ..simulation.plausibility import setting_warnings
 from ..status import Status
+from ..units import printable
 from . import Info
 
 
@@ -76,7 +78,7 @@ class StudyContext:
     def tell(self, words: str):
         """A line before a long wait, for those who watch the progress."""
         if self.progress:
-            print(words, file=sys.stderr, flush=True)
+            print(printable(words), file=sys.stderr, flush=True)
 
     def alone(self) -> "StudyContext":
         """For points that measure time: one after the other in this process, not to be kept for others, without
@@ -134,7 +136,7 @@ def run_study(
             tools = StudyContext(journal, crew, progress, kept, name=name.replace("_", "-"))
             with reading_in(written_units({"scenario": scenario.text, "overrides": scenario.overrides})):
                 answer = module.run(studied, settings, tools)
-        notes, failures = [], tools.failures
+        notes, failures = setting_warnings(scenario, name, module.Settings, flags or {}), tools.failures
         known = " ".join([answer.found, *answer.notes])
         # Unless the study has told it itself.
         if failures and failures[0] not in known:
