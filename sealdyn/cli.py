@@ -36,8 +36,8 @@ from .terminal import (
 # Before anything loads a BLAS.
 for _threads in VARIABLES:
     os.environ.setdefault(_threads, "1")
-# Figures are files: no screen is asked for, whatever is set.
-os.environ["MPLBACKEND"] = "agg"
+# Whatever is set: figures are files, and ask for no screen; kernels are compiled, and take one thread.
+os.environ |= {"MPLBACKEND": "agg", "NUMBA_DISABLE_JIT": "0", "NUMBA_NUM_THREADS": "1"}
 # It would look for plugins in everything that is installed.
 os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
 

@@ -28,8 +28,10 @@ EXIT = {
 }
 # Time (s) after which a wait is worth a progress bar.
 PATIENCE = 1.0
-# Address space (bytes) that a run and its libraries ask for.
-MEMORY = 1_000_000_000
+# Address space (bytes) that a run and its libraries ask for, as measured: of kernels that are kept, and compiled.
+MEMORY, COMPILING = 700_000_000, 1_000_000_000
+# Verbs that load kernels.
+COMPUTING = ("run", "check", "study", "validate")
 # Characters of an error.
 LONGEST = 1000
 # New objects after which Python looks for cyclic garbage: imports and compilation make many and leave little.
@@ -278,7 +280,6 @@ def carried_out(verbs):
     # What is done by then is done, and the exit code says how.
     atexit.register(deafen)
     leaves(lambda: "nothing is kept")
-    _say_short_of_memory()
     try:
         with interruption:
             # Standard output itself: while libraries print, it is not where it was.
@@ -296,15 +297,24 @@ def carried_out(verbs):
         sys.exit(INTERRUPTED)
 
 
-def _say_short_of_memory():
-    """Libraries end the process in their own words, or in none, where they find no memory: said before."""
+def _refuse_little_memory():
+    """Where they find no memory libraries and the compiler end the process in their own words, or in none: said before,
+    and, of verbs that compute, instead."""
+    allowed = -1
     with contextlib.suppress(ImportError, OSError, ValueError):
         import resource
 
         allowed = resource.getrlimit(resource.RLIMIT_AS)[0]
-        if 0 <= allowed < MEMORY:
-            line = f"memory is limited to {allowed / 1e6:.0f} MB (ulimit -v): where that ends it, some"
-            print(f"{line} {MEMORY / 1e6:.0f} are enough", file=sys.stderr, flush=True)
+    if not 0 <= allowed < COMPILING:
+        return
+    from .kernel_cache import kept_kernels
+
+    needed = MEMORY if kept_kernels() else COMPILING
+    line = f"memory is limited to {allowed / 1e6:.0f} MB (ulimit -v): at least {needed / 1e6:.0f} are needed"
+    if allowed < needed and sys.argv[1:2] and sys.argv[1] in COMPUTING:
+        raise Stop(Status.FAILED, f"{line} to compute")
+    if allowed < needed:
+        say(f"{line} for what is computed", error=True)
 
 
 def _open_streams():
@@ -326,6 +336,7 @@ def _open_streams():
 
 def _run(verbs, as_json: bool):
     try:
+        _refuse_little_memory()
         code = verbs(standalone_mode=False)
         sys.stdout.flush()
         if code == INTERRUPTED:
@@ -335,8 +346,10 @@ def _run(verbs, as_json: bool):
     except Stop as stop:
         _refuse(stop.status, stop.message, as_json, stop.errors)
         sys.exit(stop.code)
-    except BrokenPipeError:
-        # Whoever read us has seen enough; keep the interpreter from complaining at exit.
+    except (BrokenPipeError, SystemExit) as end:
+        # Whoever read us has seen enough, of which Typer makes a 1; keep the interpreter from complaining at exit.
+        if isinstance(end, SystemExit) and end.code != 1:
+            raise
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
         sys.exit(DONE)
     except (MemoryError, ImportError) as error:

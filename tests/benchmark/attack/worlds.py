@@ -14,7 +14,7 @@ from threading import Timer
 
 from sealdyn.archive import ArchiveError, read_info
 
-from .outcome import SLOW, judged
+from .outcome import SLOW, judged, shared
 
 SEAL = Path(__file__).parents[3] / "scenarios" / "fms_reference.toml"
 COMMAND = [sys.executable, "-m", "sealdyn.cli"]
@@ -66,14 +66,14 @@ def ran(
     among = {**os.environ, **(env or {})}
     among = {name: value for name, value in among.items() if value is not None}
     try:
-        done = subprocess.run([*command, *given], env=among, timeout=patience, **how)
+        done = subprocess.run([*command, *given], env=among, timeout=shared(patience), **how)
     except subprocess.TimeoutExpired:
         return SLOW, "", None
     return done.returncode, (done.stderr or b"").decode(errors="replace"), out if verb == "run" else None
 
 
-def _with(**env):
-    return lambda here: ran(here, env=env)
+def _with(patience=PATIENCE, **env):
+    return lambda here: ran(here, env=env, patience=patience)
 
 
 def _limited(what, most):
@@ -86,10 +86,9 @@ def _shell(words):
     def place(here):
         command = " ".join([sys.executable, "-m", "sealdyn.cli", "run", str(SEAL), *SHORT, "--out", str(here / "a.h5")])
         try:
-            done = subprocess.run(
-                ["sh", "-c", words.replace("%s", command)], timeout=PATIENCE, stdin=subprocess.DEVNULL, cwd=here,
-                stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
-            )  # fmt: skip
+            nothing = {"stdin": subprocess.DEVNULL, "stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE}
+            line = ["sh", "-c", words.replace("%s", command)]
+            done = subprocess.run(line, timeout=shared(PATIENCE), cwd=here, **nothing)
         except subprocess.TimeoutExpired:
             return SLOW, "", None
         return done.returncode, done.stderr.decode(errors="replace"), here / "a.h5" if done.returncode == 0 else None
@@ -323,9 +322,9 @@ WORLDS = {
     "nothing can be written": read_only,
     "nothing but the answer can be written": lambda here: read_only(here, out=True),
     "kernels that are another's, of tomorrow": read_only_kernels,
-    "kernels nowhere": _with(NUMBA_CACHE_DIR="/proc/nothing", PYTHONPYCACHEPREFIX="/proc/nothing"),
+    "kernels nowhere": _with(COMPILING, NUMBA_CACHE_DIR="/proc/nothing", PYTHONPYCACHEPREFIX="/proc/nothing"),
     "no compiler": _with(NUMBA_DISABLE_JIT="1"),
-    "a processor of no name": _with(NUMBA_CPU_NAME="nonsense"),
+    "a processor of no name": _with(COMPILING, NUMBA_CPU_NAME="nonsense"),
     "threads without number": _with(NUMBA_NUM_THREADS="0", OPENBLAS_NUM_THREADS="-1", OMP_NUM_THREADS="100000"),
     "one core": _before(lambda: os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})),
     "no locks": _with(HDF5_USE_FILE_LOCKING="FALSE"),
