@@ -17,7 +17,7 @@ from sealdyn.scenario.reader import read_scenario
 from sealdyn.simulation.simulate import simulate
 from sealdyn.studies._runner import run_study
 
-from .outcome import command, judged, tried
+from .outcome import command, judged, read_in_forks, tried
 
 SEAL = Path(__file__).parents[3] / "scenarios" / "fms_reference.toml"
 SHORT = ("run.turns=4", "run.samples_per_turn=16")
@@ -26,6 +26,8 @@ LONGER = ("run.turns=4000",)
 COMPILING = 300
 # Uses of each archive, drawn of all there are.
 DRAWN = 5
+# Of one archive in so many what is read apart is read in a process of its own, as the program does.
+APART = 20
 # What the verbs load: once, and not in every fork that is one.
 LOADED = (
     "sealdyn.cli", "sealdyn.analysis.check", "sealdyn.report.review", "sealdyn.report.comparison", "rich.progress",
@@ -249,7 +251,8 @@ def archives(ledger, seed, numbers, folder: Path) -> None:
             crafted(chance, path, whole["run"])
         every = [*uses(kind, path, folder, whole["run"])]
         for words in chance.sample(every, min(DRAWN, len(every))):
-            code, _, error = command(*words)
+            with read_in_forks(really=number % APART == 0):
+                code, _, error = command(*words)
             outcome, how = judged(code, error)
             ledger.note(name, outcome, how and f"{words[0]} {how}", f"{number}: {' '.join(map(str, words))}\n{error}")
         if kind != "broken":
