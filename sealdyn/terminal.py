@@ -29,7 +29,7 @@ EXIT = {
 # Time (s) after which a wait is worth a progress bar.
 PATIENCE = 1.0
 # Address space (bytes) that a run and its libraries ask for, as measured: of kernels that are kept, and compiled.
-MEMORY, COMPILING = 700_000_000, 1_000_000_000
+MEMORY, COMPILING = 700_000_000, 1_100_000_000
 # Verbs that load kernels.
 COMPUTING = ("run", "check", "study", "validate")
 # Characters of an error.
