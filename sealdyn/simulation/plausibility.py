@@ -18,7 +18,6 @@ from ..numerics.piecewise_linear import initially, points
 from ..scenario.errors import tables, without_indices
 from ..scenario.overrides import radius_key
 from ..scenario.reader import Scenario
-from ..scenario.settings import bare_settings, written_settings
 from ..scenario.tables import RadialFile, ScenarioFile
 from ..scene.contact import HALF_HEIGHT
 from ..scene.film import Coefficients
@@ -280,33 +279,24 @@ def _least_pressure(segment, tau, y) -> float:
 def unit_warnings(scenario: Scenario) -> list[str]:
     """Sentences on the bare numbers of a Scenario that are of another size than seals have, or of which no size tells
     the unit: one rule for every key, by what is `usual` of its quantity."""
-    kind, said = _kind_of(scenario), []
+    kind, said = kind_of(scenario), []
     for key in sorted(scenario.bare):
         own = radius_key(kind, key)
-        declared = _declared(kind, own)
+        known = declared(kind, own)
         # A diameter is twice the radius that it became.
-        values = [(2.0 if own != key else 1.0) * value for value in _values_at(scenario, own, declared[0])]
-        said += _unusual(key, values, declared)
+        values = [(2.0 if own != key else 1.0) * value for value in _values_at(scenario, own, known[0])]
+        said += unusual(key, values, known)
     return said
 
 
-def setting_warnings(scenario: Scenario, name: str, settings: type, flags: dict) -> list[str]:
-    """The same of the settings (their dataclass) of study `name` (underscored), of its `flags` and of [study.NAME]."""
-    kind, said = _kind_of(scenario), []
-    for setting, key, holds, values in bare_settings(written_settings(scenario, name, settings, flags), settings):
-        where = f"study.{name}.{setting}"
-        declared = _declared(kind, radius_key(kind, key)) if key else _usual_of(holds)
-        said += _unusual(f"{key} of {where}" if key else where, values, declared)
-    return said
-
-
-def _kind_of(scenario: Scenario) -> type:
+def kind_of(scenario: Scenario) -> type:
+    """The dataclass of a scenario's tables."""
     return RadialFile if isinstance(scenario.scene, RadialScene) else ScenarioFile
 
 
-def _unusual(key: str, values: list[float], declared: tuple[Quantity | None, Usual | None]) -> list[str]:
+def unusual(key: str, values: list[float], known: tuple[Quantity | None, Usual | None]) -> list[str]:
     """The sentence on the numbers at a key of which one is not usual; else none."""
-    quantity, usual = declared
+    quantity, usual = known
     odd = [value for value in values if usual and not usual.takes(value)]
     if not odd or usual is None:
         return []
@@ -317,17 +307,17 @@ def _unusual(key: str, values: list[float], declared: tuple[Quantity | None, Usu
     return [f"{key} without a unit is read as {f'{value:.6g} {unit}'.strip()}, which is {meant}: write its unit"]
 
 
-def _declared(kind: type, key: str) -> tuple[Quantity | None, Usual | None]:
+def declared(kind: type, key: str) -> tuple[Quantity | None, Usual | None]:
     """The quantity at a dotted key of the dataclass `kind`, None of a pure number; and what is usual of it."""
     table, _, last = without_indices(key).rpartition(".")
     holds = tables(kind).get(table, {}).get(last)
     if holds is None and last == "time":
         # Of a quantity that is a function of time.
         return SECONDS, SECONDS.usual
-    return _usual_of(holds)
+    return usual_of(holds)
 
 
-def _usual_of(holds) -> tuple[Quantity | None, Usual | None]:
+def usual_of(holds) -> tuple[Quantity | None, Usual | None]:
     """The quantity of what a key holds, None of a pure number; and what is usual of it."""
     quantity = quantity_of(holds)
     parts = [part for kind in (holds, *get_args(holds)) for part in getattr(kind, "__metadata__", ())]

@@ -8,9 +8,8 @@ from ..scenario.errors import ScenarioError, nearest_of
 from ..scenario.schema import json_schema, table_schema
 from ..scenario.settings import study_settings
 from ..scenario.tables import ScenarioFile
-from ..simulation.plausibility import setting_warnings
 from . import study_names
-from ._runner import study_info, study_module
+from ._runner import setting_warnings, study_info, study_module
 
 
 @dataclass(frozen=True)
@@ -55,9 +54,8 @@ def refuse_settings(scenario) -> list[str]:
     said = []
     for name in scenario.study:
         study = name.replace("-", "_")
-        kind = study_module(study).Settings
-        study_settings(scenario, study, kind, {})
-        said += setting_warnings(scenario, study, kind, {})
+        study_settings(scenario, study, study_module(study).Settings, {})
+        said += setting_warnings(scenario, study, {})
     return said
 
 

@@ -54,7 +54,7 @@ MAP = (
 )
 MOST_LINES = 6
 
-SPEED, TILT = Speed.__metadata__[0], Tilt.__metadata__[0]
+SPEEDS, CONINGS = Words(Speed.__metadata__[0]), Words(Tilt.__metadata__[0])
 
 
 @dataclass(frozen=True)
@@ -74,12 +74,12 @@ class Settings:
     """Largest clearance; without it three times the scene's."""
     points: int = 41
     """Number of speeds, of clearances and of tilts."""
-    frequency: Annotated[str | float | None, Words(SPEED)] = None
+    frequency: Annotated[str | float | None, SPEEDS] = None
     """Frequencies of the motion, "0:2kHz:60" or a list; with it the answer has a table of the aligned film's matrices
     for a rotordynamics code, over speed, frequency and coning."""
-    speed: Annotated[str | float | None, Words(SPEED)] = None
+    speed: Annotated[str | float | None, SPEEDS] = None
     """Shaft speeds of that table, "500:2000 rad/s:7" or a list, each at the clearance that follows there."""
-    coning: Annotated[str | float | None, Words(TILT)] = None
+    coning: Annotated[str | float | None, CONINGS] = None
     """Conings of that table, "0:6 mrad:13" or a list."""
 
 

@@ -13,9 +13,9 @@ from sealdyn.scenario.errors import is_list, tables
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.scenario.tables import RadialFile, ScenarioFile
 from sealdyn.scene.radial import RadialScene
-from sealdyn.simulation.plausibility import setting_warnings, unit_warnings
+from sealdyn.simulation.plausibility import unit_warnings
 from sealdyn.studies import study_names
-from sealdyn.studies._runner import study_module
+from sealdyn.studies._runner import setting_warnings, study_module
 from sealdyn.units import ListedQuantity, SampleTime, VaryingQuantity, quantity_of
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
@@ -149,10 +149,10 @@ def test_every_setting_of_a_study_is_under_the_rule():
                 continue
             high = quantity.usual.most if math.isfinite(quantity.usual.most) else 1.0
             for value in (20 * high, [0.0, 20 * high], f"0, {20 * high}", f"0:{20 * high}:3"):
-                (said,) = setting_warnings(scenario, name, kind, {setting: value})
+                (said,) = setting_warnings(scenario, name, {setting: value})
                 assert said.startswith(f"study.{name}.{setting} ") and quantity.usual.meant in said
             for value in (f"{20 * high} {quantity.unit}", f"0:{20 * high} {quantity.unit}:3", 0.0):
-                assert setting_warnings(scenario, name, kind, {setting: value}) == []
+                assert setting_warnings(scenario, name, {setting: value}) == []
             count += 1
     assert count >= 20
 
@@ -171,5 +171,5 @@ def test_every_setting_of_a_study_is_under_the_rule():
     ],
 )
 def test_numbers_in_words_of_a_study(name, settings, count):
-    said = setting_warnings(parse_scenario(SEAL, "seal.toml"), name, study_module(name).Settings, settings)
+    said = setting_warnings(parse_scenario(SEAL, "seal.toml"), name, settings)
     assert len(said) == count

@@ -205,6 +205,12 @@ def read_only_kernels(here):
     return read_only(here, kept, out=True)
 
 
+def no_processor(here):
+    """Kernels for it are kept apart."""
+    env = {"NUMBA_CPU_NAME": "nonsense", "NUMBA_CACHE_DIR": str(here / "kernels")}
+    return ran(here, env=env, patience=COMPILING)
+
+
 def rc_file(here):
     """Settings of matplotlib that are none, where it looks for them first."""
     (here / "matplotlibrc").write_text("backend: nonsense\nfont.size: -3\n\x00\xff: : :\n")
@@ -324,7 +330,7 @@ WORLDS = {
     "kernels that are another's, of tomorrow": read_only_kernels,
     "kernels nowhere": _with(COMPILING, NUMBA_CACHE_DIR="/proc/nothing", PYTHONPYCACHEPREFIX="/proc/nothing"),
     "no compiler": _with(NUMBA_DISABLE_JIT="1"),
-    "a processor of no name": _with(COMPILING, NUMBA_CPU_NAME="nonsense"),
+    "a processor of no name": no_processor,
     "threads without number": _with(NUMBA_NUM_THREADS="0", OPENBLAS_NUM_THREADS="-1", OMP_NUM_THREADS="100000"),
     "one core": _before(lambda: os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})),
     "no locks": _with(HDF5_USE_FILE_LOCKING="FALSE"),
