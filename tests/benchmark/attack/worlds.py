@@ -295,7 +295,7 @@ WORLDS = {
     "a terminal of one column": _with(COLUMNS="1", LINES="1", TERM="dumb"),
     "no terminal at all": _with(TERM=None, COLUMNS="nonsense"),
     "warnings are errors": _with(PYTHONWARNINGS="error"),
-    "no docstrings": _with(PYTHONOPTIMIZE="2"),
+    "no docstrings": _with(COMPILING, PYTHONOPTIMIZE="2"),
     "threads that are no number": _with(OMP_NUM_THREADS="nonsense", NUMBA_NUM_THREADS="1"),
     "a time zone that is none": _with(TZ="nonsense"),
     "output closed": _shell("%s >&-"),
