@@ -36,8 +36,8 @@ from .terminal import (
 # Before anything loads a BLAS.
 for _threads in VARIABLES:
     os.environ.setdefault(_threads, "1")
-# Figures are files: no screen is asked for, whatever is set.
-os.environ["MPLBACKEND"] = "agg"
+# Whatever is set: figures are files, and ask for no screen; kernels are compiled, and take one thread.
+os.environ |= {"MPLBACKEND": "agg", "NUMBA_DISABLE_JIT": "0", "NUMBA_NUM_THREADS": "1"}
 # It would look for plugins in everything that is installed.
 os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
 
@@ -240,8 +240,7 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
     from .simulation.plausibility import size_of
 
     scenario = _read(file, set)
-    if scenario.study:
-        _refuse_settings(scenario)
+    odd = _refuse_settings(scenario) if scenario.study else []
     say_compiling()
     with Progress() as bar:
         try:
@@ -249,22 +248,22 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
         except (SceneError, ArchiveError) as error:
             raise Stop(Status.INVALID, f"{file}: {error}") from None
         bar(1.0, 1.0, "ready")
+    found["warnings"] += odd
     if as_json:
         print(json.dumps(found))
     else:
-        for line in resolved_lines(found):
-            say(line)
+        say(*resolved_lines(found))
         if (size := size_of(scenario)).bytes > WORTH_SAYING:
             say(f"  size          {size}")
 
 
-def _refuse_settings(scenario):
-    """Ends the verb for settings of a study that it does not take."""
+def _refuse_settings(scenario) -> list[str]:
+    """Ends the verb for settings of a study that it does not take; else what is odd in them."""
     from .scenario.errors import ScenarioError
     from .studies._settings import refuse_settings
 
     try:
-        refuse_settings(scenario)
+        return refuse_settings(scenario)
     except ScenarioError as error:
         raise Stop(Status.INVALID, str(error), errors=(error,)) from None
 

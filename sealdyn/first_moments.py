@@ -1,4 +1,4 @@
-"""SIGINT, SIGTERM and SIGHUP while the program is still being loaded: one line, exit code 130.
+"""SIGINT, SIGTERM, SIGHUP and SIGXCPU (`ulimit -t`) while the program is still being loaded: one line, exit code 130.
 
 It imports nothing that takes time; `interruption` (numerics/interruption.py) hears the signals from when the command
 line is carried out.
@@ -8,7 +8,7 @@ import os
 import signal
 import sys
 
-SIGNALS = (signal.SIGINT, signal.SIGTERM, *([signal.SIGHUP] if hasattr(signal, "SIGHUP") else []))
+SIGNALS = (signal.SIGINT, signal.SIGTERM, *(getattr(signal, n) for n in ("SIGHUP", "SIGXCPU") if hasattr(signal, n)))
 CODE = 130
 _SAID = "interrupted: nothing is kept"
 

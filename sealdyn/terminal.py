@@ -15,6 +15,7 @@ from time import monotonic
 
 from .numerics.interruption import CODE, Interruption, deafen, stop_children
 from .status import Status
+from .units import cut, printable
 
 DONE, BAD_INPUT, COLLAPSED, FAILED, CHECK_FAILED, INTERRUPTED = 0, 2, 3, 4, 5, CODE
 EXIT = {
@@ -27,18 +28,14 @@ EXIT = {
 }
 # Time (s) after which a wait is worth a progress bar.
 PATIENCE = 1.0
-# Address space (bytes) that a run and its libraries ask for.
-MEMORY = 1_000_000_000
+# Address space (bytes) that a run and its libraries ask for, as measured: of kernels that are kept, and compiled.
+MEMORY, COMPILING = 700_000_000, 1_100_000_000
+# Verbs that load kernels.
+COMPUTING = ("run", "check", "study", "validate")
 # Characters of an error.
 LONGEST = 1000
 # New objects after which Python looks for cyclic garbage: imports and compilation make many and leave little.
 GARBAGE = 100_000
-
-
-def printable(words: str, kept: str = "") -> str:
-    """Words without what a terminal would obey or cannot show, but for the characters `kept`: codes that move its
-    cursor or colour it, line breaks, directions of script, halves of characters; each is told as Python writes it."""
-    return "".join(c if c.isprintable() or c in kept else repr(c)[1:-1] for c in words)
 
 
 def say(*lines, cells: bool = False, error: bool = False):
@@ -172,7 +169,7 @@ class Progress:
             moved = f"t = {done:.4g}{left}"
             words = moved if self.runs == 1 else f"run {self.runs}: {moved}"
         self.moved = monotonic() if done != self.now["completed"] else self.moved
-        self.now = {"completed": done, "total": end, "words": words}
+        self.now = {"completed": done, "total": end, "words": printable(words)}
         if self.bar:
             if again:
                 self.task = self._line(self.bar)
@@ -244,7 +241,7 @@ class Progress:
             if self.timer.finished.is_set():
                 return
             bar = Progress(
-                TextColumn("{task.fields[words]}"),
+                TextColumn("{task.fields[words]}", markup=False),
                 BarColumn(),
                 TextColumn("{task.percentage:>3.0f}%"),
                 TimeElapsedColumn(),
@@ -283,7 +280,6 @@ def carried_out(verbs):
     # What is done by then is done, and the exit code says how.
     atexit.register(deafen)
     leaves(lambda: "nothing is kept")
-    _say_short_of_memory()
     try:
         with interruption:
             # Standard output itself: while libraries print, it is not where it was.
@@ -301,15 +297,24 @@ def carried_out(verbs):
         sys.exit(INTERRUPTED)
 
 
-def _say_short_of_memory():
-    """Libraries end the process in their own words, or in none, where they find no memory: said before."""
+def _refuse_little_memory():
+    """Where they find no memory libraries and the compiler end the process in their own words, or in none: said before,
+    and, of verbs that compute, instead."""
+    allowed = -1
     with contextlib.suppress(ImportError, OSError, ValueError):
         import resource
 
         allowed = resource.getrlimit(resource.RLIMIT_AS)[0]
-        if 0 <= allowed < MEMORY:
-            line = f"memory is limited to {allowed / 1e6:.0f} MB (ulimit -v): where that ends it, some"
-            print(f"{line} {MEMORY / 1e6:.0f} are enough", file=sys.stderr, flush=True)
+    if not 0 <= allowed < COMPILING:
+        return
+    from .kernel_cache import kept_kernels
+
+    needed = MEMORY if kept_kernels() else COMPILING
+    line = f"memory is limited to {allowed / 1e6:.0f} MB (ulimit -v): at least {needed / 1e6:.0f} are needed"
+    if allowed < needed and sys.argv[1:2] and sys.argv[1] in COMPUTING:
+        raise Stop(Status.FAILED, f"{line} to compute")
+    if allowed < needed:
+        say(f"{line} for what is computed", error=True)
 
 
 def _open_streams():
@@ -331,6 +336,7 @@ def _open_streams():
 
 def _run(verbs, as_json: bool):
     try:
+        _refuse_little_memory()
         code = verbs(standalone_mode=False)
         sys.stdout.flush()
         if code == INTERRUPTED:
@@ -340,8 +346,10 @@ def _run(verbs, as_json: bool):
     except Stop as stop:
         _refuse(stop.status, stop.message, as_json, stop.errors)
         sys.exit(stop.code)
-    except BrokenPipeError:
-        # Whoever read us has seen enough; keep the interpreter from complaining at exit.
+    except (BrokenPipeError, SystemExit) as end:
+        # Whoever read us has seen enough, of which Typer makes a 1; keep the interpreter from complaining at exit.
+        if isinstance(end, SystemExit) and end.code != 1:
+            raise
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
         sys.exit(DONE)
     except (MemoryError, ImportError) as error:
@@ -393,8 +401,6 @@ def _break_off(as_json: bool, out: int):
 
 
 def _refuse(status: str, message: str, as_json: bool, errors=()):
-    from .units import cut
-
     lines = [cut(" ".join(str(said).split()), LONGEST) for said in errors or [message]]
     if not as_json:
         say(*lines, error=True)

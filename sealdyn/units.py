@@ -182,16 +182,14 @@ class SampleTime(Quantity):
     """Times of samples: usual is what lies between them."""
 
 
-UNICODE_UNITS = {
-    ord("µ"): "u",
-    ord("μ"): "u",
-    ord("·"): "*",
-    ord("⋅"): "*",
-    ord("×"): "*",
-    ord("²"): "^2",
-    ord("³"): "^3",
-}
-UNICODE_UNITS |= {ord("°"): "deg", ord("\t"): " ", ord("\u00a0"): " ", ord("\u202f"): " "}
+SAME_UNITS = {"µ": "u", "μ": "u", "·": "*", "⋅": "*", "×": "*", "²": "^2", "³": "^3", "°": "deg"}
+UNICODE_UNITS = str.maketrans(SAME_UNITS | dict.fromkeys("\t\u00a0\u202f", " "))
+
+
+def printable(words: str, kept: str = "") -> str:
+    """Words without what a terminal would obey or cannot show, but for the characters `kept`: codes that move its
+    cursor or colour it, line breaks, directions of script, halves of characters; each is told as Python writes it."""
+    return "".join(c if c.isprintable() or c in kept else repr(c)[1:-1] for c in words)
 
 
 def cut(words: str, most: int = 160) -> str:
@@ -211,7 +209,7 @@ def quoted(value: Any, most: int = 60) -> str:
         text = f'"{value}"' if isinstance(value, str) else f"{value}"
     except ValueError:  # Python does not print integers of thousands of digits
         return "a number of thousands of digits"
-    text = "".join(c if c.isprintable() else repr(c)[1:-1] for c in text[:most])
+    text = printable(text[:most])
     return text if len(text) < most else text[: most - 3] + "..."
 
 

@@ -18,7 +18,8 @@ from .files import READING_ERRORS, ArchiveError, bound_this_process, held_in_wor
 
 # Bytes of a chunk: a packed one may be far larger than its file.
 MOST_CHUNK = 1 << 28
-# Attributes of bounds, and how a value (as stored) is outside them.
+# Attributes of what stands for a missing sample; those of bounds, and how a value (as stored) is outside them.
+FILLS = ("_fillvalue", "missing_value")
 BOUNDS = {"valid_min": np.less, "valid_max": np.greater}
 
 
@@ -88,10 +89,10 @@ def _column(held, most: int) -> tuple[list[float], str]:
     if plan.get_layout() == h5py.h5d.VIRTUAL or plan.get_external_count():
         raise ArchiveError("numbers that stand in other files")
     attributes = _attributes(held)
-    stored = held[()]
+    stored, turn = held[()], 0
     if _text(attributes.pop("_unsigned", "")).lower() == "true" and stored.dtype.kind == "i":
-        stored = stored.view(stored.dtype.str.replace("i", "u"))
-    _refuse_missing(held, stored, attributes)
+        stored, turn = stored.view(stored.dtype.str.replace("i", "u")), 2 ** (8 * stored.dtype.itemsize)
+    _refuse_missing(held, stored, attributes, turn)
     scale, offset = (_number(attributes, key, without) for key, without in (("scale_factor", 1.0), ("add_offset", 0.0)))
     units = {_text(attributes[key]) for key in ("unit", "units") if key in attributes}
     if len(units) > 1:
@@ -112,20 +113,20 @@ def _attributes(held) -> dict:
     return found
 
 
-def _refuse_missing(held, stored, attributes: dict) -> None:
-    """Raises ArchiveError for a sample that says by its value, as it is stored, that there is none."""
-    fills = [
-        (key, _numbers(attributes, key, stored.dtype)) for key in ("_fillvalue", "missing_value") if key in attributes
-    ]
+def _refuse_missing(held, stored, attributes: dict, turn: int) -> None:
+    """Raises ArchiveError for a sample that says by its value, as it is stored, that there is none; `turn`: what is
+    added to negative numbers as `_Unsigned` has the values, else 0."""
+    kind = stored.dtype
+    fills = [(key, _numbers(attributes, key, kind, None, turn)) for key in FILLS if key in attributes]
     own = held.fillvalue
     if own != 0 and np.isfinite(own):
         # What was never written reads so; the program's own, without which it is zero.
         fills.append(("fill value", np.array([own]).astype(stored.dtype)))
     outside = [(key, np.isin(stored, values)) for key, values in fills]
-    low, high = _numbers(attributes, "valid_range", stored.dtype, 2) if "valid_range" in attributes else (None, None)
+    low, high = _numbers(attributes, "valid_range", kind, 2, turn) if "valid_range" in attributes else (None, None)
     given = {"valid_min": low, "valid_max": high}
     for key, beyond in BOUNDS.items():
-        bound = _numbers(attributes, key, stored.dtype, 1)[0] if key in attributes else given[key]
+        bound = _numbers(attributes, key, kind, 1, turn)[0] if key in attributes else given[key]
         if bound is not None:
             outside.append((key, beyond(stored, bound)))
     for key, where in outside:
@@ -142,18 +143,17 @@ def _number(attributes: dict, key: str, without: float) -> float:
     return value
 
 
-def _numbers(attributes: dict, key: str, kind, count: int | None = None) -> np.ndarray:
-    """Numbers of an attribute, (count,), of the type `kind` of what is stored where they are compared with it."""
+def _numbers(attributes: dict, key: str, kind, count: int | None = None, turn: int = 0) -> np.ndarray:
+    """Numbers of an attribute, (count,), of the type `kind` of what is stored where they are compared with it; `turn`
+    is added to negative ones."""
     values = np.atleast_1d(np.asarray(attributes[key]))
     if values.dtype.kind not in "fiu" or values.ndim != 1 or len(values) != (count or max(1, len(values))):
         raise ArchiveError(f"the attribute {key} is not {count or 'one or more'} number{'s' * (count != 1)}")
     if kind is not None and kind.kind == "f":
         # 1e20 in single precision is another number than in double.
         return values.astype(kind)
-    if kind is not None and kind.kind == "u" and values.dtype.kind == "i":
-        # As `_Unsigned` has the values.
-        return values.astype(values.dtype.str.replace("i", "u"))
-    return values
+    # Whole numbers, however wide: -1000 is below every byte, whatever its sign is taken for.
+    return np.array([int(v) + turn * int(v < 0) for v in values]) if turn and values.dtype.kind == "i" else values
 
 
 def _text(value) -> str:

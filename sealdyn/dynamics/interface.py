@@ -374,9 +374,9 @@ def linearised_film(wrench, f, scene, clearance, interval=None, mean_spin=None, 
 
 # Grids that are tried, coarsest first, each with twice the cells of the one before.
 MOST_DOUBLINGS = 4
-# Most cells of a sector that are looked for; and what so many take to make ready, as measured: seconds, with the square
-# of their count, and bytes.
-MOST_SOUGHT, MEASURED, SECONDS, BYTES = 7000, 9216, 160.0, 1.2e9
+# Most cells that are looked for, of a sector thrice, for its mean, cosine and sine around the circle; and what so many
+# take to make ready, as measured on one core: seconds, with the square of their count, and bytes.
+MOST_SOUGHT, MEASURED, SECONDS, BYTES = 7000, 6480, 12.0, 0.5e9
 # Share of a change that counts as the error of the finer grid.
 CHANGED = 0.5
 # Coefficient of friction that is rounding: a standing shaft has none, and its logarithm would never settle.
@@ -422,8 +422,9 @@ def _searched(asked):
 def _refuse_many(table, wanted):
     """Raises SceneError for cells that are not asked for by their number and would take minutes, before any is laid."""
     cells, angles, sectors = cells_of(table)
-    times = cells * angles / MEASURED
-    if cells * angles > MOST_SOUGHT:
+    count = cells * angles * min(sectors, 3)
+    times = count / MEASURED
+    if count > MOST_SOUGHT:
         cost = f"some {SECONDS * times**2:.0f} s and {BYTES * times / 1e9:.1f} GB to make ready"
         found = f"{wanted:g}, for which the next cells are {cells} x {angles * sectors}: {cost}"
         expected = "a looser accuracy of the cells, or cells_r and cells_theta, which are taken as they are"

@@ -23,6 +23,7 @@ from ..units import (
     VaryingQuantity,
     Velocity,
     cut,
+    printable,
     quoted,
 )
 
@@ -71,8 +72,7 @@ class ScenarioError(Exception):
         table, _, last = self.key.rpartition(".")
         where = f"[{table}] {last}" if table else last if last in ABOVE_TABLES else f"[{last}]" if last else ""
         where = f"{cut(where)}: " if where else ""
-        line = f"{cut(self.name)}: {where}found {cut(self.found)}; expected {cut(self.expected, LONGEST)}"
-        return "".join(c if c.isprintable() else " " for c in line)
+        return printable(f"{cut(self.name)}: {where}found {cut(self.found)}; expected {cut(self.expected, LONGEST)}")
 
 
 @contextmanager

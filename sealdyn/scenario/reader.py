@@ -303,7 +303,9 @@ def with_values(scenario: Scenario, values: dict[str, Any]) -> Scenario:
         gone = {key, *(f"{table}.{other}" for other in variants.ALTERNATIVES.get(last, ()))}
         given = {k for k in given if k not in gone and not k.startswith(f"{key}.")}
         given |= {*given_keys({key: as_written(value)})}
-    bare = [key for key in scenario.bare if not isinstance(values.get(key), str)]
+    told = {key: value_of(value) for key, value in values.items() if isinstance(value, str)}
+    bare = [key for key in scenario.bare if key not in told]
+    bare += [key for step, value in told.items() for key in _bare_keys(value, step)]
     found = read_tables(tables, scenario.name, frozenset(given), scenario.path and scenario.path.parent, bare=bare)
     start = "" if {"run", "run.start"} & set(values) else scenario.foreign_start
     return dataclasses.replace(

@@ -6,6 +6,7 @@ import dataclasses
 import json
 import re
 import typing
+from collections.abc import Iterator
 from types import UnionType
 from typing import Any
 
@@ -16,7 +17,7 @@ from ..scene import variants
 from ..scene.checks import check_scene
 from ..scene.scene import SceneError
 from ..unit_names import dimension_and_factor
-from ..units import quantity_of, quoted
+from ..units import Quantity, quantity_of, quoted
 from .door import refuse_unbounded
 from .errors import ScenarioError, nearest_of
 from .reader import Scenario
@@ -36,9 +37,7 @@ def study_settings(scenario: Scenario, name: str, kind: type, flags: dict[str, A
     like any other table."""
     refuse_unbounded(flags, scenario.name, f"study.{name}")
     known = [f.name for f in dataclasses.fields(kind)]
-    tables = [table for study, table in scenario.study.items() if study.replace("-", "_") == name]
-    raw = {key.replace("-", "_"): value for table in tables for key, value in table.items()}
-    raw |= {key.replace("-", "_"): value for key, value in _listed(flags, kind).items()}
+    raw = written_settings(scenario, name, kind, flags)
     for key in raw:
         if key not in known:
             hint = nearest_of(key, known)
@@ -57,6 +56,51 @@ def study_settings(scenario: Scenario, name: str, kind: type, flags: dict[str, A
         raise ScenarioError(scenario.name, f"study.{name}.{key}", found, expected) from None
     except RecursionError:
         raise ScenarioError(scenario.name, f"study.{name}", "lists too deep", "values") from None
+
+
+def written_settings(scenario: Scenario, name: str, kind: type, flags: dict[str, Any]) -> dict[str, Any]:
+    """Settings of study `name` (underscored) as they were written, of the flags and of `[study.NAME]`."""
+    tables = [table for study, table in scenario.study.items() if study.replace("-", "_") == name]
+    written = {key.replace("-", "_"): value for table in tables for key, value in table.items()}
+    return written | {key.replace("-", "_"): value for key, value in _listed(flags, kind).items()}
+
+
+@dataclasses.dataclass(frozen=True)
+class Words:
+    """The quantity of numbers in words, which `values_in_si` reads: `Annotated[str, Words(SPEED)]`."""
+
+    quantity: Quantity
+
+
+# Settings of numbers that another setting names the key of, and which.
+KEYED = {"values": ("over", "key"), "begin": ("key",), "end": ("key",), "judge": ("key",)}
+LAW = re.compile(r"\s*\w+\((.*)\)\s*")
+
+
+def bare_settings(written: dict[str, Any], kind: type) -> Iterator[tuple[str, str, Any, list[float]]]:
+    """Numbers without a unit among the settings of a study as they were `written`: the setting, the dotted key that
+    they are values of, or "" and the type of the setting, and the numbers.  What is no setting was refused before."""
+    takes = typing.get_type_hints(kind, include_extras=True)
+    for setting, value in written.items():
+        entries, holds = value if isinstance(value, list | tuple) else [value], takes.get(setting)
+        if quantity_of(holds):
+            yield setting, "", holds, _bare(",".join(map(str, entries)))
+            continue
+        named = [written[key] for key in KEYED.get(setting, ()) if isinstance(written.get(key), str)]
+        if named:
+            yield setting, named[0], None, _bare(",".join(map(str, entries)))
+        for words in entries if not named else []:
+            key, equals, values = str(words).partition("=")
+            if equals:
+                yield setting, key.strip(), None, _bare(values)
+
+
+def _bare(words: str) -> list[float]:
+    """Numbers of "a, b", the ends of "a:b:count", the arguments of "normal(a, b)"; none if one of them has a unit."""
+    words = law[1] if (law := LAW.fullmatch(words)) else words
+    entries = words.split(":")[:2] if ":" in words else words.split(",")
+    found = [NUMBER.fullmatch(entry) for entry in entries]
+    return [float(match[1]) for match in found if match] if all(m and not m[2] for m in found) else []
 
 
 def _listed(flags: dict[str, Any], kind: type) -> dict[str, Any]:

@@ -301,30 +301,46 @@ def _least_pressure(segment, tau, y) -> float:
 def unit_warnings(scenario: Scenario) -> list[str]:
     """Sentences on the bare numbers of a Scenario that are of another size than seals have, or of which no size tells
     the unit: one rule for every key, by what is `usual` of its quantity."""
-    kind, said = RadialFile if isinstance(scenario.scene, RadialScene) else ScenarioFile, []
+    kind, said = kind_of(scenario), []
     for key in sorted(scenario.bare):
         own = radius_key(kind, key)
-        quantity, usual = _declared(kind, own)
-        odd = [value for value in _values_at(scenario, own, quantity) if usual and not usual.takes(value)]
-        if odd and usual:
-            # A diameter is twice the radius that it became.
-            value = (2.0 if own != key else 1.0) * max(odd, key=lambda value: abs(math.log(abs(value))))
-            pure = quantity is None or usual.meant == "%"
-            unit = "" if pure else f"{quantity.unit}{' between samples' * isinstance(quantity, SampleTime)}"
-            meant = f"{100.0 * value:.6g} %" if pure else quantity.as_meant(value)
-            said.append(
-                f"{key} without a unit is read as {f'{value:.6g} {unit}'.strip()}, which is {meant}: write its unit"
-            )
+        known = declared(kind, own)
+        # A diameter is twice the radius that it became.
+        values = [(2.0 if own != key else 1.0) * value for value in _values_at(scenario, own, known[0])]
+        said += unusual(key, values, known)
     return said
 
 
-def _declared(kind: type, key: str) -> tuple[Quantity | None, Usual | None]:
+def kind_of(scenario: Scenario) -> type:
+    """The dataclass of a scenario's tables."""
+    return RadialFile if isinstance(scenario.scene, RadialScene) else ScenarioFile
+
+
+def unusual(key: str, values: list[float], known: tuple[Quantity | None, Usual | None]) -> list[str]:
+    """The sentence on the numbers at a key of which one is not usual; else none."""
+    quantity, usual = known
+    odd = [value for value in values if usual and not usual.takes(value)]
+    if not odd or usual is None:
+        return []
+    value = max(odd, key=lambda value: abs(math.log(abs(value))))
+    pure = quantity is None or usual.meant == "%"
+    unit = "" if pure else f"{quantity.unit}{' between samples' * isinstance(quantity, SampleTime)}"
+    meant = f"{100.0 * value:.6g} %" if pure else quantity.as_meant(value)
+    return [f"{key} without a unit is read as {f'{value:.6g} {unit}'.strip()}, which is {meant}: write its unit"]
+
+
+def declared(kind: type, key: str) -> tuple[Quantity | None, Usual | None]:
     """The quantity at a dotted key of the dataclass `kind`, None of a pure number; and what is usual of it."""
     table, _, last = without_indices(key).rpartition(".")
     holds = tables(kind).get(table, {}).get(last)
     if holds is None and last == "time":
         # Of a quantity that is a function of time.
         return SECONDS, SECONDS.usual
+    return usual_of(holds)
+
+
+def usual_of(holds) -> tuple[Quantity | None, Usual | None]:
+    """The quantity of what a key holds, None of a pure number; and what is usual of it."""
     quantity = quantity_of(holds)
     parts = [part for kind in (holds, *get_args(holds)) for part in getattr(kind, "__metadata__", ())]
     return quantity, quantity.usual if quantity else next((part for part in parts if isinstance(part, Usual)), None)

@@ -19,14 +19,17 @@ from ..films import film_of
 from ..numerics.parallel import Checkpoint, Results, evaluate, processes
 from ..quantities import reading_in
 from ..report.text import written_units
+from ..scenario.overrides import radius_key
 from ..scenario.reader import Scenario
-from ..scenario.settings import study_settings, without
+from ..scenario.settings import bare_settings, study_settings, without, written_settings
 from ..scene import variants
 from ..scene.contact import waves_of
 from ..scene.radial import RadialScene
 from ..scene.scene import SceneError
 from ..scene.symmetry import face_orders, faces_tilt
+from ..simulation.plausibility import declared, kind_of, unusual, usual_of
 from ..status import Status
+from ..units import printable
 from . import Info
 
 
@@ -49,6 +52,17 @@ def study_module(name: str):
 def study_info(name: str) -> Info:
     """What study `name` (underscored) declares of itself."""
     return study_module(name).INFO
+
+
+def setting_warnings(scenario, name: str, flags: dict) -> list[str]:
+    """Sentences on the bare numbers that are not usual among the settings of study `name` (underscored), of its `flags`
+    and of [study.NAME]: the rule of simulation/plausibility.py."""
+    kind, settings, said = kind_of(scenario), study_module(name).Settings, []
+    for setting, key, holds, values in bare_settings(written_settings(scenario, name, settings, flags), settings):
+        where = f"study.{name}.{setting}"
+        known = declared(kind, radius_key(kind, key)) if key else usual_of(holds)
+        said += unusual(f"{key} of {where}" if key else where, values, known)
+    return said
 
 
 @dataclass
@@ -76,7 +90,7 @@ class StudyContext:
     def tell(self, words: str):
         """A line before a long wait, for those who watch the progress."""
         if self.progress:
-            print(words, file=sys.stderr, flush=True)
+            print(printable(words), file=sys.stderr, flush=True)
 
     def alone(self) -> "StudyContext":
         """For points that measure time: one after the other in this process, not to be kept for others, without
@@ -134,7 +148,7 @@ def run_study(
             tools = StudyContext(journal, crew, progress, kept, name=name.replace("_", "-"))
             with reading_in(written_units({"scenario": scenario.text, "overrides": scenario.overrides})):
                 answer = module.run(studied, settings, tools)
-        notes, failures = [], tools.failures
+        notes, failures = setting_warnings(scenario, name, flags or {}), tools.failures
         known = " ".join([answer.found, *answer.notes])
         # Unless the study has told it itself.
         if failures and failures[0] not in known:

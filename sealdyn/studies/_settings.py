@@ -9,7 +9,7 @@ from ..scenario.schema import json_schema, table_schema
 from ..scenario.settings import study_settings
 from ..scenario.tables import ScenarioFile
 from . import study_names
-from ._runner import study_info, study_module
+from ._runner import setting_warnings, study_info, study_module
 
 
 @dataclass(frozen=True)
@@ -49,11 +49,14 @@ def refuse_unknown_studies(scenario) -> None:
             raise ScenarioError(scenario.name, f"study.{name}", "an unknown study", expected)
 
 
-def refuse_settings(scenario) -> None:
-    """Raises ScenarioError for a table [study.NAME] that its study does not take."""
+def refuse_settings(scenario) -> list[str]:
+    """What is odd in the tables [study.NAME], in sentences.  Raises ScenarioError for what its study does not take."""
+    said = []
     for name in scenario.study:
         study = name.replace("-", "_")
         study_settings(scenario, study, study_module(study).Settings, {})
+        said += setting_warnings(scenario, study, {})
+    return said
 
 
 def help_text(name: str) -> str:

@@ -3,6 +3,7 @@ tilted, over speed and clearance."""
 
 import cmath
 from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 
@@ -11,12 +12,12 @@ from ..answers import Answer, Axis, Level, Panel, Series, Table
 from ..dynamics.model import Model
 from ..faces.film_thickness import h_min
 from ..quantities import in_words
-from ..scenario.settings import values_in_si
+from ..scenario.settings import Words, values_in_si
 from ..scene.contact import waves_of
 from ..scene.scene import SceneError
 from ..scene.variants import frozen_at_start, tilting, with_values
 from ..simulation.film_error import steady_tilt
-from ..units import Angle, Length, Speed
+from ..units import Angle, Length, Speed, Tilt
 from . import Info
 
 ACCURACY = 1e-10
@@ -53,6 +54,8 @@ MAP = (
 )
 MOST_LINES = 6
 
+SPEEDS, CONINGS = Words(Speed.__metadata__[0]), Words(Tilt.__metadata__[0])
+
 
 @dataclass(frozen=True)
 class Settings:
@@ -71,12 +74,12 @@ class Settings:
     """Largest clearance; without it three times the scene's."""
     points: int = 41
     """Number of speeds, of clearances and of tilts."""
-    frequency: str | float | None = None
+    frequency: Annotated[str | float | None, SPEEDS] = None
     """Frequencies of the motion, "0:2kHz:60" or a list; with it the answer has a table of the aligned film's matrices
     for a rotordynamics code, over speed, frequency and coning."""
-    speed: str | float | None = None
+    speed: Annotated[str | float | None, SPEEDS] = None
     """Shaft speeds of that table, "500:2000 rad/s:7" or a list, each at the clearance that follows there."""
-    coning: str | float | None = None
+    coning: Annotated[str | float | None, CONINGS] = None
     """Conings of that table, "0:6 mrad:13" or a list."""
 
 

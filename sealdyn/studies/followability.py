@@ -5,6 +5,7 @@ import dataclasses
 import math
 from dataclasses import dataclass
 from functools import partial
+from typing import Annotated
 
 import numpy as np
 
@@ -16,10 +17,11 @@ from ..radial_seals.followers import followers_of, largest_eccentricity
 from ..radial_seals.model import RadialModel, RadialRun
 from ..scenario.errors import ScenarioError
 from ..scenario.reader import with_values
-from ..scenario.settings import axis, values_in_si
+from ..scenario.settings import Words, axis, values_in_si
 from ..scene.scene import SceneError
 from ..solvers.contract import Recorder, Status
 from ..solvers.integrate import solve
+from ..units import Speed
 from . import Info
 
 INFO = Info(
@@ -43,7 +45,7 @@ CYCLE = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh")
 class Settings:
     """Speeds, curves, and how many runs confirm them."""
 
-    speed: str = ""
+    speed: Annotated[str, Words(Speed.__metadata__[0])] = ""
     """Shaft speeds, "from:to:count" with a unit: a tenth to four times the scenario's."""
     vary: str = ""
     """One key more and its values, "key=a,b,c", a curve each: preload, loss factor, offset, friction."""

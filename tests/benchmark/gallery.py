@@ -121,17 +121,24 @@ def failures():
 
 def robustness():
     """What came from outside, and how it went."""
-    yield "attack", "attempts", "how they went", "came through", "hours"
-    kinds, hours = {}, {}
+    yield "attack", "attempts", "how they went", "came through", "hours", "code"
+    kinds, hours, codes, slowest = {}, {}, {}, {}
     for line in (GALLERY / "robustness.jsonl").read_text().splitlines():
         batch = json.loads(line)
         for name, count in batch["counts"].items():
             what, outcome = name.split(": ", 1)
+            if outcome.endswith("(ms)"):
+                slowest[what] = max(slowest.get(what, 0), count)
+                continue
             kinds.setdefault(what, Counter())[outcome] += count
+            codes.setdefault(what, {})[batch.get("code") or "before"] = None
             hours[what] = hours.get(what, 0.0) + batch["seconds"] / 3600 / len(batch["counts"])
     for what, outcomes in kinds.items():
         went = ", ".join(f"{outcome} {count}" for outcome, count in outcomes.items() if outcome != "escaped")
-        yield what, str(outcomes.total()), went, str(outcomes["escaped"]), number(hours[what])
+        code = ", ".join(codes[what])
+        yield what, str(outcomes.total()), went, str(outcomes["escaped"]), number(hours[what]), code
+    for what, most in slowest.items():
+        yield f"{what}, slowest", "-", f"{most / 1e3:.1f} s of processor time", "-", "-", "-"
 
 
 if __name__ == "__main__":

@@ -21,7 +21,7 @@ PLAIN_C = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
 def told(*words, cwd, limit=None, env=None, patience=100):
     """Exit code and lines of a command, of a machine with one `limit` (resource, most)."""
     given = [sys.executable, "-m", "sealdyn.cli", *map(str, words)]
-    limited = (lambda: resource.setrlimit(limit[0], (limit[1], limit[1]))) if limit else None
+    limited = (lambda: resource.setrlimit(limit[0], (limit[1], resource.getrlimit(limit[0])[1]))) if limit else None
     among = {**os.environ, **(env or {})}
     done = subprocess.run(
         given, cwd=cwd, env=among, preexec_fn=limited, capture_output=True, timeout=patience, stdin=subprocess.DEVNULL
@@ -72,11 +72,39 @@ def test_a_study_without_descriptors_ends(tmp_path):
     assert code in (0, 2, 4) and len(lines) <= 1
 
 
-@pytest.mark.parametrize("most", [100 << 20, 300 << 20, 500 << 20])
-def test_little_memory_is_said(most, tmp_path):
-    """Before libraries end the process in words of their own, or none."""
-    code, lines = told("run", SEAL, *SHORT, cwd=tmp_path, limit=(resource.RLIMIT_AS, most))
-    assert code != 0 and "ulimit -v" in lines[0] and not any("Traceback" in line for line in lines)
+@pytest.mark.parametrize(("most", "verb"), [(100 << 20, "run"), (500 << 20, "check"), (640 << 20, "run")])
+def test_little_memory_is_said(most, verb, tmp_path):
+    """In place of what libraries and the compiler end the process with: words of their own, or none."""
+    code, lines = told(verb, SEAL, *SHORT[:-1], cwd=tmp_path, limit=(resource.RLIMIT_AS, most))
+    assert code == 4 and len(lines) == 1 and "ulimit -v" in lines[0]
+
+
+def test_memory_for_what_is_not_computed(tmp_path):
+    code, lines = told("new", "fms", cwd=tmp_path, limit=(resource.RLIMIT_AS, 500 << 20))
+    assert code == 0 and len(lines) == 1 and (tmp_path / "fms.toml").exists()
+
+
+@pytest.mark.parametrize("setting", [{"NUMBA_DISABLE_JIT": "1"}, {"NUMBA_NUM_THREADS": "0"}])
+def test_settings_of_the_compiler_change_nothing(setting, tmp_path):
+    """Kernels are compiled and take one thread, whatever is set."""
+    code, lines = told("run", SEAL, *SHORT, cwd=tmp_path, env=setting)
+    assert code == 0 and not lines
+
+
+def test_a_reader_that_has_seen_enough_is_no_error(tmp_path):
+    ours, theirs = os.pipe()
+    os.close(ours)
+    given = [sys.executable, "-m", "sealdyn.cli", "schema"]
+    done = subprocess.run(given, cwd=tmp_path, stdout=theirs, stderr=subprocess.PIPE, timeout=100)
+    os.close(theirs)
+    assert done.returncode == 0 and done.stderr == b""
+
+
+def test_little_time_of_the_processor_is_an_interruption(tmp_path):
+    """`ulimit -t`: what was computed is kept."""
+    words = ("run", SEAL, "--set", "run.turns=2e5", "--set", "run.samples_per_turn=8", "--no-plot", "--out", "a.h5")
+    code, lines = told(*words, cwd=tmp_path, limit=(resource.RLIMIT_CPU, 4))
+    assert code == 130 and lines[-1].startswith("interrupted")
 
 
 def test_no_blocks_on_the_disk(tmp_path):

@@ -8,7 +8,9 @@ import pytest
 from command import sealdyn
 
 from sealdyn.report.text import csv_lines
-from sealdyn.terminal import printable, say
+from sealdyn.studies._runner import StudyContext
+from sealdyn.terminal import Progress, say
+from sealdyn.units import printable
 
 HOSTILE = ("\x1b[2J", "\x1b]0;title\x07", "\x9b31m", "a\rb", "a\nb", "\u202egnp", "\udc80", "\x00", "\u2028")
 
@@ -21,6 +23,16 @@ def test_nothing_that_a_terminal_obeys_is_printed(words, capsys):
     say(words, error=True)
     out, error = capsys.readouterr()
     assert out.count("\n") == 2 and error.count("\n") == 1 and "\x1b" not in out + error
+
+
+@pytest.mark.parametrize("words", HOSTILE)
+def test_a_study_and_its_progress_print_no_other(words, capsys):
+    """Keys and settings are words of a file, too; nor are brackets colours."""
+    StudyContext(None, None, progress=print).tell(f"<{words}>")
+    (line,) = capsys.readouterr().err.splitlines()
+    bar = Progress()
+    bar(1.0, 2.0, f"[red]{words}")
+    assert line.isprintable() and bar.now["words"].isprintable() and bar.now["words"].startswith("[red]")
 
 
 def test_plain_words_are_as_they_are():

@@ -32,6 +32,7 @@ def hdf5(path, stored, **attributes):
         ((AXIAL * 2 + 100).astype("u1"), {"scale_factor": np.float32(0.5), "add_offset": -50.0}),
         (AXIAL + 3.0, {"add_offset": np.array([-3.0])}),
         ((AXIAL * 2 + 140).astype("u1").view("i1"), {"scale_factor": 0.5, "add_offset": -70.0, "_Unsigned": "true"}),
+        ((AXIAL * 2 + 100).astype("u1"), {"scale_factor": 0.5, "add_offset": -50.0, "valid_min": -1000}),
         (AXIAL.astype(">f4"), {}), (AXIAL, {"units": np.array(["um"], dtype=ROW)}),
         (AXIAL, {"units": None, "unit": "um"}), (AXIAL, {"units": None, "Units": b"um"}),
         (AXIAL, {"units": None, "UNITS": np.array([b"um"])}), (AXIAL * 1e-6, {"units": None}),
@@ -51,6 +52,8 @@ def test_numbers_are_what_their_attributes_say(tmp_path, stored, attributes):
         (AXIAL, {"valid_max": 4.0}), (AXIAL, {"scale_factor": "2"}), (AXIAL, {"scale_factor": [1.0, 2.0]}),
         (AXIAL, {"scale_factor": np.nan}), (AXIAL, {"add_offset": h5py.Empty("f8")}), (AXIAL, {"unit": "mm"}),
         (AXIAL, {"units": ["um", "mm"]}), (AXIAL, {"units": 1.0}), (AXIAL, {"units": "um", "Units": "mm"}),
+        ((AXIAL + 100).astype("u1"), {"valid_max": -1000}),
+        ((AXIAL + 9).astype("i1"), {"_Unsigned": "true", "valid_max": -1000}),
         (AXIAL.reshape(2, 4), {}), (AXIAL * 1j, {}), (AXIAL, {"units": "seconds since 2020-01-01"}),
     ],
 )  # fmt: skip

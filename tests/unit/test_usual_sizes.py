@@ -4,6 +4,7 @@ import math
 import random
 from pathlib import Path
 from types import SimpleNamespace
+from typing import get_type_hints
 
 import pytest
 
@@ -13,6 +14,8 @@ from sealdyn.scenario.reader import parse_scenario
 from sealdyn.scenario.tables import RadialFile, ScenarioFile
 from sealdyn.scene.radial import RadialScene
 from sealdyn.simulation.plausibility import unit_warnings
+from sealdyn.studies import study_names
+from sealdyn.studies._runner import setting_warnings, study_module
 from sealdyn.units import ListedQuantity, SampleTime, VaryingQuantity, quantity_of
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
@@ -129,3 +132,44 @@ def test_a_unit_that_is_written_later_is_one():
     scenario = parse_scenario(SEAL, "seal.toml", ["film.viscosity=0.8"])
     assert unit_warnings(scenario) and not unit_warnings(scenario.with_({"film.viscosity": "0.8 Pa*s"}))
     assert unit_warnings(scenario.with_({"film.viscosity": 0.9}))
+    # Words without a unit are a bare number, whoever gives them.
+    fine = parse_scenario(SEAL, "seal.toml")
+    assert not unit_warnings(fine) and unit_warnings(fine.with_({"film.viscosity": "0.8"}))
+
+
+@pytest.mark.core
+def test_every_setting_of_a_study_is_under_the_rule():
+    """Those with a quantity of their own, alone and in lists."""
+    scenario, count = parse_scenario(SEAL, "seal.toml"), 0
+    for name in study_names():
+        name = name.replace("-", "_")
+        kind = study_module(name).Settings
+        for setting, holds in get_type_hints(kind, include_extras=True).items():
+            if not (quantity := quantity_of(holds)):
+                continue
+            high = quantity.usual.most if math.isfinite(quantity.usual.most) else 1.0
+            for value in (20 * high, [0.0, 20 * high], f"0, {20 * high}", f"0:{20 * high}:3"):
+                (said,) = setting_warnings(scenario, name, {setting: value})
+                assert said.startswith(f"study.{name}.{setting} ") and quantity.usual.meant in said
+            for value in (f"{20 * high} {quantity.unit}", f"0:{20 * high} {quantity.unit}:3", 0.0):
+                assert setting_warnings(scenario, name, {setting: value}) == []
+            count += 1
+    assert count >= 20
+
+
+@pytest.mark.parametrize(
+    ("name", "settings", "count"),
+    [
+        ("sweep", {"vary": ["film.clearance=5:10:6", "stator.mass=1,2"]}, 1),
+        ("sweep", {"vary": ["film.clearance=5:10 um:6", "film.reynolds.cells_r=8,16"]}, 0),
+        ("tolerance", {"scatter": "film.coning = normal(5, 0.1)"}, 1),
+        ("tolerance", {"scatter": "film.coning = normal(5 mrad, 0.1)"}, 0),
+        ("rub", {"key": "film.viscosity", "values": "1:2:5"}, 1),
+        ("rub", {"key": "film.viscosity", "values": "1:2 mPa*s:5", "judge": 1}, 1),
+        ("runup", {"key": "shaft.speed", "begin": 10, "end": "20 rad/s"}, 1),
+        ("contact_onset", {"key": "rotor.runout", "over": "film.clearance", "values": [5, 6]}, 1),
+    ],
+)
+def test_numbers_in_words_of_a_study(name, settings, count):
+    said = setting_warnings(parse_scenario(SEAL, "seal.toml"), name, settings)
+    assert len(said) == count

@@ -1,5 +1,6 @@
 """Archives of runs and studies with bytes changed, and such as nobody but HDF5 could have written."""
 
+import importlib
 import json
 import os
 import random
@@ -16,13 +17,23 @@ from sealdyn.scenario.reader import read_scenario
 from sealdyn.simulation.simulate import simulate
 from sealdyn.studies._runner import run_study
 
-from .outcome import command, judged, tried
+from .outcome import command, judged, read_in_forks, tried
 
 SEAL = Path(__file__).parents[3] / "scenarios" / "fms_reference.toml"
 SHORT = ("run.turns=4", "run.samples_per_turn=16")
 LONGER = ("run.turns=4000",)
 # Longest wait (s) for the first of each kind, whose kernels may have to be compiled.
 COMPILING = 300
+# Uses of each archive, drawn of all there are.
+DRAWN = 5
+# Of one archive in so many what is read apart is read in a process of its own, as the program does.
+APART = 20
+# What the verbs load: once, and not in every fork that is one.
+LOADED = (
+    "sealdyn.cli", "sealdyn.analysis.check", "sealdyn.report.review", "sealdyn.report.comparison", "rich.progress",
+    "sealdyn.report.charts.overview", "sealdyn.report.charts.orbit", "sealdyn.report.panels", "matplotlib.figure",
+    "matplotlib.backends.backend_agg", "sealdyn.studies.equilibrium",
+)  # fmt: skip
 
 
 def made(folder: Path) -> dict[str, Path]:
@@ -214,11 +225,13 @@ WAYS = (
 
 
 def archives(ledger, seed, numbers, folder: Path) -> None:
-    """Corrupted ones (odd numbers) and crafted ones, each shown, drawn, opened, run again, begun from, gone on with."""
+    """Corrupted ones (odd numbers) and crafted ones, each opened, and put to some of their uses."""
+    for name in LOADED:
+        importlib.import_module(name)
     whole = made(folder)
     for kind in whole:
         # Kernels that are compiled on the way would count as hangs.
-        for words in uses(kind, whole[kind], folder):
+        for words in uses(kind, whole[kind], folder, whole["run"]):
             command(*words, patience=COMPILING)
     for left in folder.glob("*again-*"), folder.glob("*from-*"):
         for path in left:
@@ -236,8 +249,10 @@ def archives(ledger, seed, numbers, folder: Path) -> None:
             corrupted(chance, path)
         else:
             crafted(chance, path, whole["run"])
-        for words in uses(kind, path, folder):
-            code, _, error = command(*words)
+        every = [*uses(kind, path, folder, whole["run"])]
+        for words in chance.sample(every, min(DRAWN, len(every))):
+            with read_in_forks(really=number % APART == 0):
+                code, _, error = command(*words)
             outcome, how = judged(code, error)
             ledger.note(name, outcome, how and f"{words[0]} {how}", f"{number}: {' '.join(map(str, words))}\n{error}")
         if kind != "broken":
@@ -247,16 +262,27 @@ def archives(ledger, seed, numbers, folder: Path) -> None:
             left.unlink()
 
 
-def uses(kind, path, folder):
-    """Words of the verbs that read an archive of this kind."""
+def uses(kind, path, folder, other):
+    """Words of every verb that reads an archive of this kind; `other` a whole one of a run."""
+    figure = folder / f"figure-{path.stem}.png"
     yield "show", path
+    yield "show", path, "--json"
+    yield "plot", path, "--out", figure
     if kind == "study":
-        yield "show", path, "--json"
+        yield "show", path, "--csv", "--table", "table"
+        yield "check", path
+        yield "compare", path, path
         return
-    yield "plot", path, "--out", folder / f"figure-{path.stem}.png"
     short = ("--no-plot", *(word for override in SHORT for word in ("--set", override)))
+    yield "report", path, "--out", folder / f"page-{path.stem}.html"
+    yield "compare", other, path
     if kind == "run":
         yield "show", path, "--csv"
+        yield "plot", path, "--kind", "orbit", "--out", figure
+        yield "animate", path, "--out", figure
+        yield "check", path
+        out = folder / f"study-{path.stem}.h5"
+        yield "study", "equilibrium", path, "--points", 5, "--workers", 1, "--no-plot", "--out", out
         yield "run", path, *short, "--out", folder / f"again-{path.stem}.h5"
         yield "run", SEAL, *short, "--set", f"run.start={path}", "--out", folder / f"from-{path.stem}.h5"
     else:

@@ -12,7 +12,7 @@ from sealdyn.archive import ArchiveError
 from sealdyn.scenario.motion_files import read_motion
 from sealdyn.units import QuantityError
 
-from .outcome import LONGEST, place, tried
+from .outcome import LONGEST, place, read_in_forks, tried
 
 NAMES = ("time", "axial", "tilt_x", "tilt_y")
 # Exact factors to SI of units that are drawn; all others are to be refused.
@@ -27,6 +27,8 @@ WRONG = (
 BYTES = (0, 9, 10, 13, 34, 39, 44, 46, 59, 101, 255)
 CELLS = ("", "nan", "inf", "1_0", "0x1", "１", "--", "1e999", '"1"', "=1", "1 2", "1,5", "#")
 TITLES = ("{n} ({u})", "{n} [{u}]", "{n}({u})", " {n} ( {u} )", '"{n}\n({u})"', "{n} {u}", "{n}_{u}")
+# One file of HDF5 in so many is read in a process of its own, as the program does.
+APART = 20
 # What is below it is nothing.
 NOTHING = 1e-25
 
@@ -42,7 +44,8 @@ def motions(ledger, seed, numbers, folder) -> None:
         if chance.random() < 0.33:
             _damage(chance, path)
         try:
-            found, outcome, how = tried(lambda path=path: read_motion(path))
+            with read_in_forks(really=number % APART == 1):
+                found, outcome, how = tried(lambda path=path: read_motion(path))
         except QuantityError:
             found, outcome, how = None, "refused", ""
         if how.startswith("QuantityError"):

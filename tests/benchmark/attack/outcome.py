@@ -5,6 +5,7 @@ import contextlib
 import math
 import os
 import signal
+import subprocess
 import sys
 import tempfile
 import time
@@ -12,7 +13,7 @@ import traceback
 import warnings
 from pathlib import Path
 
-from sealdyn.archive import ArchiveError
+from sealdyn.archive import ArchiveError, columns, files
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scene.scene import SceneError
 
@@ -138,6 +139,48 @@ def _be_the_command(words, out, error):
         sys.stdout.flush()
         sys.stderr.flush()
     os._exit(code)
+
+
+@contextlib.contextmanager
+def read_in_forks(really=False):
+    """What the program reads in a process of its own is read in a fork of this one, which need not be started: the same
+    code and bounds, and a crash is its own; `really`: as the program does it."""
+    before = files.read_apart
+    files.read_apart = columns.read_apart = before if really else _read_in_fork
+    try:
+        yield
+    finally:
+        files.read_apart = columns.read_apart = before
+
+
+def _read_in_fork(module, *words):
+    with tempfile.TemporaryFile() as out:
+        child = os.fork()
+        if child == 0:
+            code = 70
+            try:
+                for number in (signal.SIGALRM, signal.SIGXCPU, signal.SIGTERM):
+                    signal.signal(number, signal.SIG_DFL)
+                os.dup2(os.open(os.devnull, os.O_RDWR), 2)
+                sys.argv, sys.stdout = [module, *words], open(out.fileno(), "w", closefd=False)  # noqa: SIM115
+                code = (columns if module == columns.__name__ else files).main()
+                sys.stdout.flush()
+            finally:
+                os._exit(code)
+        try:
+            end = time.monotonic() + files.PATIENCE
+            while not (done := os.waitpid(child, os.WNOHANG))[0]:
+                if time.monotonic() > end:
+                    return None
+                time.sleep(0.002)
+            child = None
+        finally:
+            if child:
+                os.kill(child, signal.SIGKILL)
+                os.waitpid(child, 0)
+        out.seek(0)
+        code = os.waitstatus_to_exitcode(done[1])
+        return None if code == files.ENDLESS else subprocess.CompletedProcess(words, code, out.read(), b"")
 
 
 def judged(code: int, error: str, allowed=(0, 2, 3, 4, 5), most=2) -> tuple[str, str]:

@@ -1,19 +1,24 @@
 """The world around a run: streams that are closed or full, names, folders, limits and settings that nobody foresaw."""
 
+import ctypes
 import os
 import random
 import resource
 import shutil
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
+from threading import Timer
 
 from sealdyn.archive import ArchiveError, read_info
 
-from .outcome import SLOW, judged
+from .outcome import SLOW, judged, shared
 
 SEAL = Path(__file__).parents[3] / "scenarios" / "fms_reference.toml"
 COMMAND = [sys.executable, "-m", "sealdyn.cli"]
+LIBC = ctypes.CDLL(None)
 # Longest time (s); where kernels are compiled anew; where there is an end to be waited for.
 PATIENCE, COMPILING = 60, 400
 SHORT = ("--set", "run.turns=4", "--set", "run.samples_per_turn=16")
@@ -50,7 +55,9 @@ def _whole(out, here, outcome):
     return ("escaped", f"left behind: {left}") if rows != 65 or left else (outcome, "")
 
 
-def ran(here, *words, env=None, patience=PATIENCE, out="a.h5", scenario=SEAL, verb="run", **how):
+def ran(
+    here, *words, env=None, patience=PATIENCE, out="a.h5", scenario=SEAL, verb="run", command=tuple(COMMAND), **how
+):
     """Exit code, standard error, and the archive of a run."""
     # A whole path stays one.
     out = here / out
@@ -59,14 +66,14 @@ def ran(here, *words, env=None, patience=PATIENCE, out="a.h5", scenario=SEAL, ve
     among = {**os.environ, **(env or {})}
     among = {name: value for name, value in among.items() if value is not None}
     try:
-        done = subprocess.run([*COMMAND, *given], env=among, timeout=patience, **how)
+        done = subprocess.run([*command, *given], env=among, timeout=shared(patience), **how)
     except subprocess.TimeoutExpired:
         return SLOW, "", None
     return done.returncode, (done.stderr or b"").decode(errors="replace"), out if verb == "run" else None
 
 
-def _with(**env):
-    return lambda here: ran(here, env=env)
+def _with(patience=PATIENCE, **env):
+    return lambda here: ran(here, env=env, patience=patience)
 
 
 def _limited(what, most):
@@ -79,10 +86,9 @@ def _shell(words):
     def place(here):
         command = " ".join([sys.executable, "-m", "sealdyn.cli", "run", str(SEAL), *SHORT, "--out", str(here / "a.h5")])
         try:
-            done = subprocess.run(
-                ["sh", "-c", words.replace("%s", command)], timeout=PATIENCE, stdin=subprocess.DEVNULL, cwd=here,
-                stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
-            )  # fmt: skip
+            nothing = {"stdin": subprocess.DEVNULL, "stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE}
+            line = ["sh", "-c", words.replace("%s", command)]
+            done = subprocess.run(line, timeout=shared(PATIENCE), cwd=here, **nothing)
         except subprocess.TimeoutExpired:
             return SLOW, "", None
         return done.returncode, done.stderr.decode(errors="replace"), here / "a.h5" if done.returncode == 0 else None
@@ -164,6 +170,113 @@ def immutable(here):
             subprocess.run(["chattr", "-i", here / "a.h5"])
 
 
+def _no_rights():
+    """Be bound by the permissions of files, as who is not root is: from the command on."""
+    if os.geteuid() == 0:
+        for right in (1, 2, 3):  # CAP_DAC_OVERRIDE, CAP_DAC_READ_SEARCH, CAP_FOWNER
+            LIBC.prctl(24, right, 0, 0, 0)  # PR_CAPBSET_DROP
+
+
+def read_only(here, kept=None, out=False):
+    """Home, folder and temporary folder can be read, and nothing more; kernels are those `kept`; `out`: one folder for
+    what is asked for can be written."""
+    for name in ("home", "out"):
+        (here / name).mkdir()
+    os.chmod(here / "home", 0o555)
+    env = {"HOME": str(here / "home"), "XDG_CACHE_HOME": None, "MPLCONFIGDIR": None, "TMPDIR": str(here / "home")}
+    env |= {"NUMBA_CACHE_DIR": str(kept)} if kept else {}
+    os.chmod(here, 0o555)
+    try:
+        where = "out/a.h5" if out else "a.h5"
+        return ran(here, env=env, out=where, cwd=here, patience=COMPILING, preexec_fn=_no_rights)
+    finally:
+        os.chmod(here, 0o755)
+
+
+def read_only_kernels(here):
+    """Kept kernels of another, in a folder where nothing can be written, with the marks of a clock of tomorrow."""
+    kept, late = here / "kernels", time.time() + 1e8
+    code, error, _ = ran(here, env={"NUMBA_CACHE_DIR": str(kept)}, patience=COMPILING)
+    if code:
+        return code, error, None
+    for path in (*kept.rglob("*"), kept):
+        os.utime(path, (late, late))
+        os.chmod(path, 0o555 if path.is_dir() else 0o444)
+    return read_only(here, kept, out=True)
+
+
+def no_processor(here):
+    """Kernels for it are kept apart."""
+    env = {"NUMBA_CPU_NAME": "nonsense", "NUMBA_CACHE_DIR": str(here / "kernels")}
+    return ran(here, env=env, patience=COMPILING)
+
+
+def rc_file(here):
+    """Settings of matplotlib that are none, where it looks for them first."""
+    (here / "matplotlibrc").write_text("backend: nonsense\nfont.size: -3\n\x00\xff: : :\n")
+    return ran(here, cwd=here)
+
+
+def other_letters(here):
+    """Of the folder one stands in, a line break among them."""
+    at = here / "Läufer 密封 \n ±"
+    at.mkdir()
+    return ran(here, cwd=at, out=at / "a.h5")
+
+
+def shadows(here):
+    """Files in the folder that are named as what is imported."""
+    for name in ("numpy", "json", "h5py", "signal", "sealdyn"):
+        (here / f"{name}.py").write_text("raise SystemExit(70)\n")
+    program = Path(sys.executable).with_name("sealdyn")
+    return ran(here, cwd=here, command=[str(program)]) if program.exists() else (2, "", None)
+
+
+def terminal(here):
+    """One of no size, whose type nobody knows."""
+    import pty
+
+    ours, theirs = pty.openpty()
+    try:
+        env = {"TERM": "nobody-knows", "COLUMNS": "0", "LINES": "-1"}
+        return ran(here, env=env, stdin=theirs, stdout=theirs)
+    finally:
+        os.close(ours)
+        os.close(theirs)
+
+
+def full_pipe(here):
+    """Standard output is a pipe with room for nothing, and its reader goes."""
+    ours, theirs = os.pipe()
+    os.set_blocking(theirs, False)
+    try:
+        while True:
+            os.write(theirs, bytes(65536))
+    except BlockingIOError:
+        pass
+    os.set_blocking(theirs, True)
+    Timer(5.0, os.close, (ours,)).start()
+    try:
+        return ran(here, stdout=theirs)
+    finally:
+        os.close(theirs)
+
+
+def _before(*steps):
+    """Steps that the process does before it becomes the command."""
+    return lambda here: ran(here, preexec_fn=lambda: [step() for step in steps])
+
+
+def _ignored(*signals):
+    return lambda here: ran(
+        here, restore_signals=False, preexec_fn=lambda: [signal.signal(n, signal.SIG_IGN) for n in signals]
+    )
+
+
+def _blocked():
+    signal.pthread_sigmask(signal.SIG_BLOCK, signal.valid_signals())
+
+
 WORLDS = {
     "C locale": _with(LC_ALL="C", PYTHONUTF8="0", PYTHONCOERCECLOCALE="0"),
     "ascii streams": _with(PYTHONIOENCODING="ascii"),
@@ -182,7 +295,7 @@ WORLDS = {
     "a terminal of one column": _with(COLUMNS="1", LINES="1", TERM="dumb"),
     "no terminal at all": _with(TERM=None, COLUMNS="nonsense"),
     "warnings are errors": _with(PYTHONWARNINGS="error"),
-    "no docstrings": _with(PYTHONOPTIMIZE="2"),
+    "no docstrings": _with(COMPILING, PYTHONOPTIMIZE="2"),
     "threads that are no number": _with(OMP_NUM_THREADS="nonsense", NUMBA_NUM_THREADS="1"),
     "a time zone that is none": _with(TZ="nonsense"),
     "output closed": _shell("%s >&-"),
@@ -210,5 +323,36 @@ WORLDS = {
     "a scenario of 3 GB": huge,
     "a folder as scenario": lambda here: ran(here, scenario=here),
     "a folder that is gone": lost_folder,
+    "a folder of other letters": other_letters,
+    "files of the names of modules": shadows,
+    "nothing can be written": read_only,
+    "nothing but the answer can be written": lambda here: read_only(here, out=True),
+    "kernels that are another's, of tomorrow": read_only_kernels,
+    "kernels nowhere": _with(COMPILING, NUMBA_CACHE_DIR="/proc/nothing", PYTHONPYCACHEPREFIX="/proc/nothing"),
+    "no compiler": _with(NUMBA_DISABLE_JIT="1"),
+    "a processor of no name": no_processor,
+    "threads without number": _with(NUMBA_NUM_THREADS="0", OPENBLAS_NUM_THREADS="-1", OMP_NUM_THREADS="100000"),
+    "one core": _before(lambda: os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})),
+    "no locks": _with(HDF5_USE_FILE_LOCKING="FALSE"),
+    "locks of no kind": _with(HDF5_USE_FILE_LOCKING="nonsense", HDF5_PLUGIN_PATH="/dev/null"),
+    "SUNDIALS by Python": _with(SEALDYN_SUNDIALS="python"),
+    "SUNDIALS by nobody": _with(SEALDYN_SUNDIALS="nonsense"),
+    "hashes of chance": _with(PYTHONHASHSEED="4294967295"),
+    "developer mode": _with(PYTHONDEVMODE="1", PYTHONMALLOC="debug", PYTHONWARNINGS="error"),
+    "no bytecode, no site": _with(PYTHONDONTWRITEBYTECODE="1", PYTHONNOUSERSITE="1", PYTHONSAFEPATH="1"),
+    "settings of matplotlib": rc_file,
+    "a terminal of no size": terminal,
+    "a pipe that is full": full_pipe,
+    "no way to programs": _with(PATH="", SHELL=None, USER=None, LOGNAME=None),
+    "700 MB of memory": _limited(resource.RLIMIT_AS, 700 << 20),
+    "a stack of 64 kB": _limited(resource.RLIMIT_STACK, 1 << 16),
+    "a process alone": _limited(resource.RLIMIT_NPROC, 1),
+    "no core files, no locked memory": _before(
+        lambda: resource.setrlimit(resource.RLIMIT_CORE, (0, 0)),
+        lambda: resource.setrlimit(resource.RLIMIT_MEMLOCK, (0, 0)),
+    ),
+    "one second of processor": _before(lambda: resource.setrlimit(resource.RLIMIT_CPU, (1, resource.RLIM_INFINITY))),
+    "signals that are ignored": _ignored(signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGPIPE, signal.SIGCHLD),
+    "signals that are blocked": _before(_blocked),
     "damaged kernels": damaged_kernels,
 }  # fmt: skip
