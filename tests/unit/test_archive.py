@@ -47,7 +47,7 @@ def test_what_was_looked_at_once_is_looked_at_again_when_it_has_changed(tmp_path
     assert_rows(tmp_path / "run.h5", 3)
     with h5py.File(tmp_path / "run.h5", "r+") as file:
         file.attrs["message"] = "well done"
-    with pytest.raises(ArchiveError, match="run.h5"):
+    with pytest.raises(ArchiveError, match="altered"):
         column(tmp_path / "run.h5", "h_min")
 
 
