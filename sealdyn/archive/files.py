@@ -285,7 +285,8 @@ def must_be_readable(file, path, known: str, what: str) -> None:
 
 # Root attributes that are words, and those that are tables or lists, kept as JSON.
 WORDS = (
-    "name", "question", "title", "created", "version", "solver", "program", "study", "scenario", "status", "message",
+    "name", "question", "title", "created", "version", "solver", "solvers", "program", "study", "scenario", "status",
+    "message",
 )  # fmt: skip
 TABLES = {"summary": dict, "resolved": dict, "libraries": dict, "units": dict, "along": dict, "overrides": list}
 

@@ -16,6 +16,7 @@ from .. import __version__, studies
 from ..answers import as_json, plain
 from ..archive import file_stem, link_target, only_writer, write_study
 from ..films import film_of
+from ..kernel_cache import solvers_digest
 from ..numerics.parallel import Checkpoint, Results, evaluate, processes
 from ..quantities import reading_in
 from ..report.text import written_units
@@ -152,6 +153,7 @@ def run_study(
         }
         meta = {
             "version": __version__,
+            "solvers": solvers_digest(),
             "libraries": libraries,
             "name": scenario.name,
             "question": scenario.question,

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from sealdyn.archive import read_study
 from sealdyn.report.charts.study_work_precision import SHORT
+from sealdyn.report.text import solvers_words
 from sealdyn.studies.work_precision.study import NAMES
 
 GALLERY = Path(__file__).parents[2] / "outputs" / "gallery"
@@ -53,11 +54,12 @@ def models():
 
 def machine():
     """What the reference scene was measured on."""
-    answer = read_study(GALLERY / "work_precision_fmr.h5")["answer"]
-    yield "reference solution", "second, and its difference", "machine"
+    study = read_study(GALLERY / "work_precision_fmr.h5")
+    answer = study["answer"]
+    yield "reference solution", "second, and its difference", "machine", "solvers"
     judges, on = answer["judges"], answer["machine"]
     yield (judges["exact"], f"{judges['second']}, {number(answer['judge_error'][answer['where']])}",
-           f"{on['processor']}, {on['cores']} cores")  # fmt: skip
+           f"{on['processor']}, {on['cores']} cores", solvers_words(study))  # fmt: skip
 
 
 def scenarios():
