@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
-from ..films import film_named, film_names
+from ..films import film_named, film_names, film_of
 from ..kernel_cache import kept_kernels, kernel_folder
 from ..radial_seals.followers import closed_form_sentences
 from ..scenario.errors import ScenarioError
@@ -81,8 +81,10 @@ def compile_all(progress: Callable[[float, float, str], None]) -> str:
                 # What cannot be computed so is refused before a kernel is called, or after.
                 with contextlib.suppress(SceneError):
                     simulate(scenario, Path(folder) / "run.h5")
-            progress(done, len(paths), f"{name}, many runs")
-            simulate_many(_beginning(read_scenario(path)), [{}, {}], workers=1)
+            if isinstance(scenario.scene, RadialScene) or film_of(scenario.scene).unknowns is None:
+                # The others are stepped one by one there, too.
+                progress(done, len(paths), f"{name}, many runs")
+                simulate_many(_beginning(read_scenario(path)), [{}, {}], workers=1)
     progress(len(paths), len(paths), "compiled")
     return f"{kernel_folder()}: {len(kept_kernels())} files of kernels"
 

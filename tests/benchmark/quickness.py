@@ -30,6 +30,8 @@ from sealdyn.studies.work_precision.study import machine
 
 ROOT = Path(__file__).parents[2]
 IMPORTS = ("-c", "import numba, scipy.integrate, h5py, pydantic")
+ONE_KERNEL = ("-c", IMPORTS[1] + "; import numba as nb; from sealdyn.films.radial.film import wrench; "
+                                 "wrench.compile((nb.float64[::1], nb.float64[::1]))")  # fmt: skip
 # Runs of many: enough that what is done once does not count.
 MANY = 400
 LINEAR = "pump_seal"
@@ -72,6 +74,9 @@ def of_processes(folder, repeats, cold):
 
     imports = lambda: processor_time(IMPORTS, folder)  # noqa: E731
     yield "run, kernels kept, without figure / imports", 1.3, ratio(run("fms_reference", "--no-plot"), imports, repeats)
+    loaded = lambda: processor_time(ONE_KERNEL, folder)  # noqa: E731
+    found = ratio(run("fms_reference", "--no-plot"), loaded, repeats)
+    yield "the same / imports and one kernel that is kept", 1.3, found
     yield "run, kernels kept, with figure / imports", 2.0, ratio(run("fms_reference"), imports, repeats)
     goals = {"fms_reference": 11.0, "gas_dam_reference": 14.0} if cold else {}
     for name, goal in goals.items():
