@@ -75,35 +75,32 @@ def compile_all(progress: Callable[[float, float, str], None]) -> str:
     paths, met = shipped_paths(), set()
     with tempfile.TemporaryDirectory() as folder:
         for done, (name, path) in enumerate(paths.items()):
-            for scenario in _beginnings(read_scenario(path), met):
-                film = "" if isinstance(scenario.scene, RadialScene) else f", film {scenario.scene.film.model}"
+            given = read_scenario(path)
+            length = {key: SHARE * value for key in ("turns", "duration") if (value := getattr(given.run, key))}
+            given = replace(given, run=replace(given.run, **length))
+            radial = isinstance(given.scene, RadialScene)
+            for scenario in (given, *(() if radial else _others(given, met))):
+                film = "" if radial else f", film {scenario.scene.film.model}"
                 progress(done, len(paths), f"{name}{film}, {scenario.run.solver}")
                 # What cannot be computed so is refused before a kernel is called, or after.
                 with contextlib.suppress(SceneError):
                     simulate(scenario, Path(folder) / "run.h5")
-            if isinstance(scenario.scene, RadialScene) or film_of(scenario.scene).unknowns is None:
-                # The others are stepped one by one there, too.
+            if radial or film_of(given.scene).unknowns is None:
+                # Others are stepped one by one there, too.
                 progress(done, len(paths), f"{name}, many runs")
-                simulate_many(_beginning(read_scenario(path)), [{}, {}], workers=1)
+                simulate_many(given, [{}, {}], workers=1)
     progress(len(paths), len(paths), "compiled")
     return f"{kernel_folder()}: {len(kept_kernels())} files of kernels"
 
 
-def _beginnings(scenario: Scenario, met: set):
-    """The beginning of a scenario's run as it is; and, where they are the first of their kind, of each film without
-    unknowns that takes its faces, by each method."""
-    scenario = _beginning(scenario)
-    yield scenario
+def _others(scenario: Scenario, met: set):
+    """The scenario with each film without unknowns that takes its faces, by each method, where they are the first of
+    their kind."""
     scene = scenario.scene
-    for film in () if isinstance(scene, RadialScene) else film_names(scene.film, waves_of(scene)):
+    for film in film_names(scene.film, waves_of(scene)):
         kind = film, scene.contact is not None, faces_tilt(scene)
         if kind not in met and film_named(film).unknowns is None:
             for solver in ("auto", *METHODS):
                 with contextlib.suppress(ScenarioError):
                     yield with_values(scenario, {"film.model": film, "run.solver": solver})
         met.add(kind)
-
-
-def _beginning(scenario: Scenario) -> Scenario:
-    length = {key: SHARE * value for key in ("turns", "duration") if (value := getattr(scenario.run, key))}
-    return replace(scenario, run=replace(scenario.run, **length))
