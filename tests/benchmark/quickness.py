@@ -140,9 +140,8 @@ def main():
     asked = words.parse_args()
     rows = json.loads(asked.keep.read_text())["rows"] if asked.keep and asked.keep.exists() else {}
     with tempfile.TemporaryDirectory() as folder:
-        for part in (
-            of_processes(folder, asked.repeats, asked.cold), of_many(folder, asked.repeats), of_one(folder, asked.repeats),
-        ):  # fmt: skip
+        begun = of_processes(folder, asked.repeats, asked.cold)
+        for part in (begun, of_many(folder, asked.repeats), of_one(folder, asked.repeats)):
             for name, goal, found in part:
                 rows[name] = {"goal": goal, **found}
                 seconds = f"{found['seconds']:.4g} s, {found['over']:.4g} s"
