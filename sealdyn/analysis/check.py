@@ -6,9 +6,10 @@ import tempfile
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from time import monotonic
 
 from ..films import film_named, film_names, film_of
-from ..kernel_cache import kept_kernels, kernel_folder
+from ..kernel_cache import compiling, kept_kernels, kernel_folder
 from ..radial_seals.followers import closed_form_sentences
 from ..scenario.errors import ScenarioError
 from ..scenario.reader import Scenario, read_scenario, with_values
@@ -30,6 +31,8 @@ from . import design_rules, radial_rules
 
 # Of a shipped run's length: what is computed of it to have its kernels compiled.
 SHARE = 0.05
+# Time (s) without a kernel being compiled after which one by a method that is not its own is left.
+QUIET = 3.0
 
 
 def checked(scenario: Scenario) -> dict:
@@ -72,7 +75,12 @@ def rules_of(scenario: Scenario) -> list[dict]:
 def compile_all(progress: Callable[[float, float, str], None]) -> str:
     """Compiles what runs need and is not kept yet, and says what is: computes the beginning of every shipped scenario,
     alone and many at once, and of each film that takes one, by every method that can.  `progress(done, all, words)`."""
-    paths, met = shipped_paths(), set()
+    paths, met, last = shipped_paths(), set(), [0.0]
+
+    def note(_=0):
+        last[0] = monotonic()
+
+    compiling.append(note)
     with tempfile.TemporaryDirectory() as folder:
         for done, (name, path) in enumerate(paths.items()):
             given = read_scenario(path)
@@ -82,13 +90,17 @@ def compile_all(progress: Callable[[float, float, str], None]) -> str:
             for scenario in (given, *(() if radial else _others(given, met))):
                 film = "" if radial else f", film {scenario.scene.film.model}"
                 progress(done, len(paths), f"{name}{film}, {scenario.run.solver}")
-                # What cannot be computed so is refused before a kernel is called, or after.
+                note()
+                # What cannot be computed so is refused before a kernel is called, or after; by a method that is made
+                # for other scenes it would take hours.
+                stop = None if scenario is given else lambda: monotonic() - last[0] > QUIET
                 with contextlib.suppress(SceneError):
-                    simulate(scenario, Path(folder) / "run.h5")
+                    simulate(scenario, Path(folder) / "run.h5", stop=stop)
             if radial or film_of(given.scene).unknowns is None:
                 # Others are stepped one by one there, too.
                 progress(done, len(paths), f"{name}, many runs")
                 simulate_many(given, [{}, {}], workers=1)
+    compiling.remove(note)
     progress(len(paths), len(paths), "compiled")
     return f"{kernel_folder()}: {len(kept_kernels())} files of kernels"
 

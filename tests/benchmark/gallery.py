@@ -71,7 +71,8 @@ def quickness():
     yield "figure", "ratio", "goal", "s", "over, s"
     for name, row in found["rows"].items():
         yield name, number(row["ratio"], 3), number(row["goal"]), number(row["seconds"], 3), number(row["over"], 3)
-    yield f"{on['date']}, {on['processor']}, {on['cores']} cores; {libraries}; solvers {solvers_words(on)}", *4 * ("",)
+    busy = f"{on['cores']} cores under a load of {number(on['load'])}"
+    yield f"{on['date']}, {on['processor']}, {busy}; {libraries}; solvers {solvers_words(on)}", *4 * ("",)
 
 
 def scenarios():
