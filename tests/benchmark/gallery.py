@@ -14,7 +14,6 @@ from pathlib import Path
 
 from sealdyn.archive import read_study
 from sealdyn.report.charts.study_work_precision import SHORT
-from sealdyn.report.text import solvers_words
 from sealdyn.studies.work_precision.study import NAMES
 
 GALLERY = Path(__file__).parents[2] / "outputs" / "gallery"
@@ -60,7 +59,7 @@ def machine():
     yield "reference solution", "second, and its difference", "machine", "solvers"
     judges, on = answer["judges"], answer["machine"]
     yield (judges["exact"], f"{judges['second']}, {number(answer['judge_error'][answer['where']])}",
-           f"{on['processor']}, {on['cores']} cores", solvers_words(study))  # fmt: skip
+           f"{on['processor']}, {on['cores']} cores", study.get("solvers", "of no name"))  # fmt: skip
 
 
 def quickness():
@@ -72,7 +71,7 @@ def quickness():
     for name, row in found["rows"].items():
         yield name, number(row["ratio"], 3), number(row["goal"]), number(row["seconds"], 3), number(row["over"], 3)
     busy = f"{on['cores']} cores under a load of {number(on['load'])}"
-    yield f"{on['date']}, {on['processor']}, {busy}; {libraries}; solvers {solvers_words(on)}", *4 * ("",)
+    yield f"{on['date']}, {on['processor']}, {busy}; {libraries}; solvers {on['solvers']}", *4 * ("",)
 
 
 def scenarios():
