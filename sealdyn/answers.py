@@ -9,8 +9,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, is_dataclass
 from typing import Any
 
-import tomlkit
-
 from .quantities import quantity, units_read
 
 
@@ -188,6 +186,8 @@ def toml_line(value: Any) -> str:
 
 def toml_text(tables: dict[str, Any]) -> str:
     """Tables as the text of a TOML file.  Raises TypeError or ValueError for what TOML cannot hold."""
+    import tomlkit
+
     return tomlkit.dumps(_with_arrays(tables))
 
 
@@ -203,6 +203,8 @@ def _are_numbers(value: Any) -> bool:
 
 
 def _item(value: Any):
+    import tomlkit
+
     if isinstance(value, dict):
         table = tomlkit.inline_table()
         for key, held in value.items():

@@ -30,7 +30,6 @@ from .terminal import (
     not_written,
     reads,
     say,
-    say_compiling,
 )  # fmt: skip
 
 # Before anything loads a BLAS.
@@ -84,7 +83,6 @@ def _options(
         bool, typer.Option("--version", callback=_say_version, is_eager=True, help="print the version and end")
     ] = False,
 ):
-    # What the program is for stands above.
     if context.invoked_subcommand is None:
         width = max(len(line) for line, _ in FIRST_STEPS)
         print("sealdyn: how the rings of a mechanical face seal move.  First steps:\n")
@@ -164,7 +162,6 @@ def run(
     if resume:
         _check_resumable(out, scenario)
     yes = _large(file, scenario, yes)
-    say_compiling()
     words = [str(file), *(f"--set {shlex.quote(word)}" for word in set or ()), "--out", str(out), "--continue"]
     leaves(lambda: kept_of_run(partial_path(out), words))
     with Progress() as bar, libraries_on_stderr(), interruption.looks():
@@ -199,11 +196,9 @@ def _large(file, scenario, yes: bool) -> bool:
     try:
         refuse_large(scenario, yes)
     except SceneError as error:
-        refused = Stop(Status.INVALID, f"{file}: {error}")
-        if not size.possible or not sys.stdin.isatty():
-            raise refused from None
-        if not typer.confirm(f"{size}.  Run it?", err=True):
-            raise refused from None
+        asked = size.possible and sys.stdin.isatty()
+        if not (asked and typer.confirm(f"{size}.  Run it?", err=True)):
+            raise Stop(Status.INVALID, f"{file}: {error}") from None
         return True
     if size.bytes > WORTH_SAYING:
         say(size, error=True)
@@ -225,9 +220,8 @@ def _check_resumable(out, scenario):
         for tables in (info["resolved"], scenario.resolved())
     )
     if info["scenario"] != scenario.text or list(info.get("overrides", [])) != list(scenario.overrides) or held != now:
-        raise Stop(
-            Status.INVALID, f"{source}: was made from another scenario text or other --set; run without --continue"
-        )
+        line = f"{source}: was made from another scenario text or other --set; run without --continue"
+        raise Stop(Status.INVALID, line)
 
 
 @app.command()
@@ -241,7 +235,6 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
 
     scenario = _read(file, set)
     odd = _refuse_settings(scenario) if scenario.study else []
-    say_compiling()
     with Progress() as bar:
         try:
             found = checked(scenario)
@@ -278,6 +271,17 @@ def _of_a_face_seal(file):
                                    "is the overview, its motion in animate")  # fmt: skip
 
 
+@app.command("compile")
+def compile_kernels():
+    """Compile all that runs need beforehand, in an image for instance: every film and method, some minutes."""
+    from .analysis.check import compile_all
+
+    leaves(lambda: "what has been compiled is kept")
+    with Progress() as bar, libraries_on_stderr():
+        found = compile_all(bar)
+    say(found)
+
+
 @app.command()
 def new(
     kind: Annotated[
@@ -294,9 +298,8 @@ def new(
     from .scenario.templates import kinds, template
 
     if kind not in kinds():
-        raise Stop(
-            Status.INVALID, f'new: found "{kind}"; expected one of {", ".join(kinds())}{_nearest(kind, kinds())}'
-        )
+        line = f'new: found "{kind}"; expected one of {", ".join(kinds())}{_nearest(kind, kinds())}'
+        raise Stop(Status.INVALID, line)
     out = out or Path(f"{kind}.toml")
     try:
         with open(out, "x", encoding="utf-8") as file:
@@ -328,9 +331,8 @@ def list_scenarios(as_json: AsJson = False):
         print(json.dumps({"status": Status.OK, "message": f"{len(rows)} scenarios", "scenarios": rows}))
         return
     say(f"scenarios in {folder}:")
-    width = max(map(len, found), default=0)
     for name, question in found.items():
-        say(f"  {name:{width}}  {question}")
+        say(f"  {name:{max(map(len, found))}}  {question}")
 
 
 @app.command()
@@ -374,8 +376,8 @@ def _show_study(file, csv, mat, as_json, table):
     study = read_study(file)
     answer = study["answer"]
     if mat is not None:
-        # MATLAB has no points in names, and no units.
         name, columns = _table_of(file, study, table)
+        # MATLAB has no points in names, and no units.
         plain = {key.split(" [")[0].replace(".", "_"): values for key, values in columns.items()}
         _write_mat(mat, plain, f"columns of the table {name}, units as --csv has them")
     elif csv or table is not None:
@@ -501,7 +503,6 @@ def report(
         raise Stop(Status.INVALID, f'--out: found "{out}"; expected a file name ending in .html')
     for file in files:
         _must_be_archive(file)
-    say_compiling()
     with Progress() as bar, reads(files[0]):
         try:
             review(files, out, title, _rules_of, sources_of_film, progress=bar)
@@ -576,8 +577,7 @@ def validate(
     if not set(wanted) <= set(names):
         near = _nearest(wanted[0], names)
         raise Stop(Status.INVALID, f'source: found "{source}"; expected one of {", ".join(names)}{near}')
-    say_compiling()
-    with libraries_on_stderr():
+    with Progress(), libraries_on_stderr():
         found = checks(wanted)
     rows = [row for part in found.values() for row in part]
     good = all(row["verdict"] != "FAILED" for row in rows)
@@ -635,7 +635,6 @@ def study(
     if scheduler is not None and workers is not None:
         raise Stop(Status.INVALID, f"--workers: found {workers}; expected nothing, the scheduler has its own")
     scenario = _read(file, set)
-    say_compiling()
     out = archive_of(name, scenario, out)
     leaves(lambda: kept_of_study(journal_of(out), results))
     with Progress() as bar, libraries_on_stderr():

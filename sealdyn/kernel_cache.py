@@ -13,6 +13,7 @@ import os
 import shutil
 import tempfile
 import warnings
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 
@@ -23,12 +24,23 @@ SOURCES = (
     "radial_seals", "scene", "solvers", "status.py", "unit_names.py", "units.py",
 )  # fmt: skip
 PREFIX, NEWEST = "sealdyn-kernels-", 3
+# Called with 1 as numba begins to compile a kernel that is not kept, with -1 as it ends; one may need another first.
+compiling: list[Callable[[int], None]] = []
 
 
 def kernel_sources() -> list[Path]:
     """Files that kernels are made of, in a fixed order."""
     places = (PACKAGE / source for source in SOURCES)
     return sorted(file for place in places for file in ([place] if place.is_file() else place.rglob("*.py")))
+
+
+@cache
+def solvers_digest() -> str:
+    """What today's films, equations and solvers are called: a digest of the files that kernels are made of."""
+    digest = hashlib.sha256()
+    for file in kernel_sources():
+        digest.update(str(file.relative_to(PACKAGE)).encode() + file.read_bytes())
+    return digest.hexdigest()[:16]
 
 
 @cache
@@ -39,10 +51,7 @@ def kernel_folder() -> Path:
     written.  Kernels kept where nothing can be written are read from there; new ones are then kept in a temporary
     folder, which goes when this process ends, with a warning if none were kept.
     """
-    digest = hashlib.sha256()
-    for file in kernel_sources():
-        digest.update(str(file.relative_to(PACKAGE)).encode() + file.read_bytes())
-    folders = [place / (PREFIX + digest.hexdigest()[:16]) for place in _places()]
+    folders = [place / (PREFIX + solvers_digest()) for place in _places()]
     for folder in folders:
         with contextlib.suppress(OSError):
             _make(folder)

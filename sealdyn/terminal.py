@@ -9,6 +9,7 @@ import json
 import os
 import sys
 from datetime import timedelta
+from math import inf
 from pathlib import Path
 from threading import Lock, Timer
 from time import monotonic
@@ -125,20 +126,14 @@ def not_written(error: OSError, where, kept: str) -> Stop:
     return Stop(Status.FAILED, f"{line}; {kept}") if is_full(error) else Stop(Status.INVALID, line)
 
 
-def say_compiling():
-    """The first run on a machine compiles the kernels; say so before the wait."""
-    from .kernel_cache import kept_kernels
-
-    if not kept_kernels():
-        print("first run on this machine: compiling kernels once (a minute or so) ...", file=sys.stderr, flush=True)
-
-
 class Progress:
-    """Progress bar on standard error: how far, what is being done, and the time, which moves in any case.  What is done
-    in a second needs none."""
+    """Progress bar on standard error: how far, what is being done, and the time, which moves in any case, and in a line
+    that kernels are compiled, where they are.  What is done in a second needs none."""
 
     def __init__(self):
-        self.bar = self.task = self.listener = None
+        self.bar = self.task = None
+        # Kernels that are being compiled, one needing the other, and when the first was begun.
+        self.compiling, self.compiled_from = 0, 0.0
         self.now = {"completed": 0.0, "total": 1.0, "words": "making ready"}
         # A run that is done once more, sharper or to measure its error, begins again.
         self.runs = 1
@@ -148,16 +143,20 @@ class Progress:
         self.timer.daemon = True
 
     def __enter__(self):
+        from .kernel_cache import compiling
+
+        compiling.append(self._compile)
         self.timer.start()
         return self
 
     def __exit__(self, *error):
+        from .kernel_cache import compiling
+
+        compiling.remove(self._compile)
         self.timer.cancel()
         with self.lock:
             if self.bar:
                 self.bar.stop()
-            if self.listener:
-                sys.modules["numba.core.event"].unregister("numba:compile", self.listener)
 
     def __call__(self, done: float, end: float, words: str | None = None):
         """`done` of `end`; without `words` both are times (s)."""
@@ -201,26 +200,18 @@ class Progress:
             return "remaining: not known" if not task.finished else ""
         return f"remaining: {timedelta(seconds=int(left))}"
 
-    def _watch_compiling(self):
-        """Say so while numba compiles a kernel that is not kept on disk yet; one may need another first."""
-        events = sys.modules.get("numba.core.event")
-        if events is None:
-            return
-        watch, begun = self, []
-
-        class Compiling(events.Listener):
-            def on_start(self, event):
-                begun.append(event)
-                watch.bar.update(watch.task, words=watch.now["words"] + ": compiling kernels")
-
-            def on_end(self, event):
-                # What had begun before this looked is not known.
-                del begun[-1:]
-                if not begun:
-                    watch.bar.update(watch.task, words=watch.now["words"])
-
-        self.listener = Compiling()
-        events.register("numba:compile", self.listener)
+    def _compile(self, more: int):
+        """numba has begun (1) or ended (-1) to compile a kernel that is not kept on disk yet."""
+        self.compiling += more
+        self.compiled_from = self.compiled_from or monotonic()
+        with self.lock:
+            if self.compiled_from < inf and monotonic() - self.compiled_from > PATIENCE:
+                self.compiled_from = inf
+                line = "compiling kernels once on this machine (a minute or so) ..."
+                self.bar.console.print(line) if self.bar else say(line, error=True)
+            if self.bar:
+                words = ": compiling kernels" if self.compiling else ""
+                self.bar.update(self.task, words=self.now["words"] + words)
 
     def _show(self):
         from rich.console import Console
@@ -252,7 +243,6 @@ class Progress:
             self.task = self._line(bar)
             bar.start()
             self.bar = bar
-            self._watch_compiling()
 
 
 def drawn(chart: str, archive: Path) -> str | None:

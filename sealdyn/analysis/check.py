@@ -1,15 +1,38 @@
-"""What is known of a scenario before it runs: its scene in SI, the model chosen, cautions, and the design rules."""
+"""What is known of a scenario before it runs: its scene in SI, the model chosen, cautions, and the design rules.  What
+runs compile, made ready before them."""
 
+import contextlib
+import tempfile
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from time import monotonic
+
+from ..films import film_named, film_names, film_of
+from ..kernel_cache import compiling, kept_kernels, kernel_folder
 from ..radial_seals.followers import closed_form_sentences
-from ..scenario.reader import Scenario
+from ..scenario.errors import ScenarioError
+from ..scenario.reader import Scenario, read_scenario, with_values
+from ..scenario.shipped import shipped_paths
+from ..scene.contact import waves_of
 from ..scene.radial import RadialScene
+from ..scene.scene import SceneError
+from ..scene.symmetry import faces_tilt
+from ..simulation.batch import simulate_many
 from ..simulation.film_error import reynolds_comparison
 from ..simulation.plausibility import scene_cautions, size_of, unit_warnings
 from ..simulation.result import plain
 from ..simulation.selection import prepare_run
+from ..simulation.simulate import simulate
 from ..simulation.summary import model_chosen
+from ..solvers.methods import METHODS
 from ..status import Status
 from . import design_rules, radial_rules
+
+# Of a shipped run's length: what is computed of it to have its kernels compiled.
+SHARE = 0.05
+# Time (s) without a kernel being compiled after which one by a method that is not its own is left.
+QUIET = 3.0
 
 
 def checked(scenario: Scenario) -> dict:
@@ -47,3 +70,49 @@ def rules_of(scenario: Scenario) -> list[dict]:
         found = design_rules.findings(scenario, prepare_run(scenario)[0].model)
     order = ("fail", "note", "acknowledged", "pass", "not applicable")
     return sorted(found, key=lambda row: order.index(row["verdict"]))
+
+
+def compile_all(progress: Callable[[float, float, str], None]) -> str:
+    """Compiles what runs need and is not kept yet, and says what is: computes the beginning of every shipped scenario,
+    alone and many at once, and of each film that takes one, by every method that can.  `progress(done, all, words)`."""
+    paths, met, last = shipped_paths(), set(), [0.0]
+
+    def note(_=0):
+        last[0] = monotonic()
+
+    compiling.append(note)
+    with tempfile.TemporaryDirectory() as folder:
+        for done, (name, path) in enumerate(paths.items()):
+            given = read_scenario(path)
+            length = {key: SHARE * value for key in ("turns", "duration") if (value := getattr(given.run, key))}
+            given = replace(given, run=replace(given.run, **length))
+            radial = isinstance(given.scene, RadialScene)
+            for scenario in (given, *(() if radial else _others(given, met))):
+                film = "" if radial else f", film {scenario.scene.film.model}"
+                progress(done, len(paths), f"{name}{film}, {scenario.run.solver}")
+                note()
+                # What cannot be computed so is refused before a kernel is called, or after; by a method that is made
+                # for other scenes it would take hours.
+                stop = None if scenario is given else lambda: monotonic() - last[0] > QUIET
+                with contextlib.suppress(SceneError):
+                    simulate(scenario, Path(folder) / "run.h5", stop=stop)
+            if radial or film_of(given.scene).unknowns is None:
+                # Others are stepped one by one there, too.
+                progress(done, len(paths), f"{name}, many runs")
+                simulate_many(given, [{}, {}], workers=1)
+    compiling.remove(note)
+    progress(len(paths), len(paths), "compiled")
+    return f"{kernel_folder()}: {len(kept_kernels())} files of kernels"
+
+
+def _others(scenario: Scenario, met: set):
+    """The scenario with each film without unknowns that takes its faces, by each method, where they are the first of
+    their kind."""
+    scene = scenario.scene
+    for film in film_names(scene.film, waves_of(scene)):
+        kind = film, scene.contact is not None, faces_tilt(scene)
+        if kind not in met and film_named(film).unknowns is None:
+            for solver in ("auto", *METHODS):
+                with contextlib.suppress(ScenarioError):
+                    yield with_values(scenario, {"film.model": film, "run.solver": solver})
+        met.add(kind)

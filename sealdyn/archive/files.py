@@ -103,23 +103,23 @@ def partial_path(path: str | os.PathLike) -> Path:
 
 def mark_sound(path: str | os.PathLike) -> None:
     """Note that this process wrote the file, and wrote it well."""
-    _sound.add(_identity(path))
+    _sound.add(file_identity(path))
 
 
 def begin_writing(file) -> None:
     """This process begins to write an open file, which is sound at any time, until `end_writing`."""
-    _writing.add(_identity(file.fileno())[:2])
+    _writing.add(file_identity(file.fileno())[:2])
 
 
 def end_writing(file) -> None:
     """This process is about to close a file that it has written."""
-    _writing.discard(_identity(file.fileno())[:2])
+    _writing.discard(file_identity(file.fileno())[:2])
 
 
 def must_be_sound(path: str | os.PathLike) -> None:
     """Raises ArchiveError for a file that holds links to elsewhere, datasets in other files, types or sizes that no
     archive has, or that HDF5 cannot read; FileNotFoundError for one that is not there (any more)."""
-    identity = _identity(path)
+    identity = file_identity(path)
     if identity in _sound or identity[:2] in _writing:
         return
     must_have_an_end(path)
@@ -179,7 +179,8 @@ def held_in_words(error) -> str:
     return f"where it is files cannot be locked; {LOCKING}=FALSE does without"
 
 
-def _identity(path):
+def file_identity(path):
+    """What differs of a file that is another, or was written to: device, inode, size, time."""
     about = os.stat(path)
     return about.st_dev, about.st_ino, about.st_size, about.st_mtime_ns
 
@@ -284,7 +285,8 @@ def must_be_readable(file, path, known: str, what: str) -> None:
 
 # Root attributes that are words, and those that are tables or lists, kept as JSON.
 WORDS = (
-    "name", "question", "title", "created", "version", "solver", "program", "study", "scenario", "status", "message",
+    "name", "question", "title", "created", "version", "solver", "solvers", "program", "study", "scenario", "status",
+    "message",
 )  # fmt: skip
 TABLES = {"summary": dict, "resolved": dict, "libraries": dict, "units": dict, "along": dict, "overrides": list}
 

@@ -284,7 +284,7 @@ class ArchiveWriter:
 
     def _take_over(self, source):
         with opened_run(source) as (file, record):
-            if set(names_over(file, "time")) != set(self._series):
+            if set(*names_over(file, "time")) != set(self._series):
                 raise ArchiveError(f"{source}: cannot be continued, its series differ from this run's")
             if not (self._fields.are_those_of(file) if self._fields else FIELD_TIME not in file):
                 raise ArchiveError(f"{source}: cannot be continued, its fields differ from this run's")

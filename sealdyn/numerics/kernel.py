@@ -16,13 +16,27 @@ from pathlib import Path
 
 from llvmlite import ir
 from numba import cfunc, float64, int32, int64, njit, types
+from numba.core import event
 from numba.core.caching import CompileResultCacheImpl, IndexDataCacheFile
 from numba.extending import intrinsic, register_jitable
 
-from ..kernel_cache import KernelLocator
+from ..kernel_cache import KernelLocator, compiling
 
 # numba asks its locators in turn.
 CompileResultCacheImpl._locator_classes.insert(0, KernelLocator)
+
+
+class _Compiling(event.Listener):
+    def on_start(self, _):
+        for tell in compiling:
+            tell(1)
+
+    def on_end(self, _):
+        for tell in compiling:
+            tell(-1)
+
+
+event.register("numba:compile", _Compiling())
 
 # --- checksums ----------------------------------------------------------------------------------------
 

@@ -13,7 +13,7 @@ from ..answers import toml_line
 from ..archive import is_study, read_info, read_study
 from ..quantities import printed, reading_in
 from .summary import is_radial, run_answer
-from .text import line_words, question_of, study_lines, written_units
+from .text import line_words, question_of, solvers_words, study_lines, written_units
 
 TEMPLATE = Path(__file__).with_name("review.html")
 # Figures of a run and what they show.
@@ -209,6 +209,7 @@ def _made(path: Path, info: dict) -> list[tuple[str, str]]:
     rows = [
         ("archive", path.name),
         ("made", f"{info.get('created', '?')} by sealdyn {info.get('version', '?')}"),
+        ("solvers", solvers_words(info)),
         ("changed on the command line", ", ".join(map(str, overrides)) or "nothing"),
     ]
     if isinstance(libraries, dict) and libraries:

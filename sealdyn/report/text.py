@@ -5,6 +5,7 @@ import re
 from collections.abc import Mapping
 
 from ..answers import toml_line
+from ..kernel_cache import solvers_digest
 from ..quantities import in_words, number, reading_in, shown_in
 from ..status import Status
 
@@ -36,6 +37,12 @@ def line_words(line) -> str:
             goes_on = not told or part.split()[0] in JOINED
             told += f"{' ' if goes_on else ', '}{part}"
     return told.strip()
+
+
+def solvers_words(info: Mapping) -> str:
+    """By which films, equations and solvers an archive was made, and whether today's are others."""
+    made, today = info.get("solvers", "of no name"), solvers_digest()
+    return made if made == today else f"{made}, older than {today} of today"
 
 
 def question_of(comment: str) -> str:

@@ -19,6 +19,7 @@ from .. import __version__, archive
 from ..archive import ArchiveWriter, only_writer, partial_path
 from ..dynamics.extrema import H_LEG, H_RADIUS, H_TAU, H_THETA, H
 from ..dynamics.tally import Tally
+from ..kernel_cache import solvers_digest
 from ..scenario.reader import Scenario
 from ..scene.radial import RadialScene
 from ..solvers.contract import Status
@@ -218,6 +219,7 @@ def _libraries() -> dict[str, str]:
 def _meta(scenario, method) -> dict:
     return {
         "version": __version__,
+        "solvers": solvers_digest(),
         "libraries": _libraries(),
         "solver": method,
         "accuracy": scenario.run.accuracy,

@@ -10,14 +10,16 @@ from contextlib import nullcontext
 from dataclasses import asdict, dataclass, field, replace
 from importlib.metadata import version
 from pathlib import Path
+from time import monotonic
 from typing import Any
 
 from .. import __version__, studies
 from ..answers import as_json, plain
 from ..archive import file_stem, link_target, only_writer, write_study
 from ..films import film_of
+from ..kernel_cache import solvers_digest
 from ..numerics.parallel import Checkpoint, Results, evaluate, processes
-from ..quantities import reading_in
+from ..quantities import in_words, reading_in
 from ..report.text import written_units
 from ..scenario.overrides import radius_key
 from ..scenario.reader import Scenario
@@ -31,6 +33,9 @@ from ..simulation.plausibility import declared, kind_of, unusual, usual_of
 from ..status import Status
 from ..units import printable
 from . import Info
+
+# Time (s) of one process beyond which a study says after its first point what the others will take.
+LONG = 60.0
 
 
 def archive_of(name: str, scenario, out=None) -> Path:
@@ -82,8 +87,17 @@ class StudyContext:
         """Rows of `function(point)` for JSON-able points, in their order; `{"failed": reason}` for one that failed."""
         if not points:
             return []
-        store = self.results or self.journal
-        rows = evaluate(function, points, store, self.crew, lambda n, m: self.say(n / m, f"{what}: {n} of {m}"), what)
+        store, begun, kept = self.results or self.journal, monotonic(), []
+
+        def say(done: int, everything: int):
+            self.say(done / everything, f"{what}: {done} of {everything}")
+            kept.append(done)
+            spent, left = monotonic() - begun, everything - done
+            # The first that was not kept from before: what it took, the others will.
+            if len(kept) == 2 and spent * left > LONG:
+                self.tell(f"{what}: the first took {in_words('time', spent)}, {left} are left")
+
+        rows = evaluate(function, points, store, self.crew, say, what)
         self.failures += [row["failed"] for row in rows if "failed" in row]
         return rows
 
@@ -166,6 +180,7 @@ def run_study(
         }
         meta = {
             "version": __version__,
+            "solvers": solvers_digest(),
             "libraries": libraries,
             "name": scenario.name,
             "question": scenario.question,

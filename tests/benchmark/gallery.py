@@ -3,8 +3,9 @@
     python tests/benchmark/gallery.py
 
 The tables are computed from the data beside the pictures: work_precision_fmr.h5 and failures.h5 (archives of their
-studies), work_precision_all.json (all_scenarios.py), honesty.json, honesty_reynolds.json, honesty_gas.json,
-honesty_gas_reynolds.json and honesty_all.json (honesty.py), robustness.jsonl (robustness.py).  The captions stand in
+studies), work_precision_all.json (all_scenarios.py), quickness.json (quickness.py), honesty.json, honesty_gas.json,
+honesty_reynolds.json, honesty_gas_reynolds.json and honesty_all.json (honesty.py), robustness.jsonl (robustness.py).
+The captions stand in
 gallery.md.
 """
 
@@ -24,7 +25,7 @@ CAPTIONS = Path(__file__).with_name("gallery.md")
 def page() -> str:
     """The captions, each `{{ name }}` replaced by the table of that name."""
     text = CAPTIONS.read_text()
-    for rows in (fastest, models, machine, scenarios, honesty, failures, robustness):
+    for rows in (fastest, models, machine, quickness, scenarios, honesty, failures, robustness):
         head, *below = [f"| {' | '.join(row)} |" for row in rows()]
         lines = [head, "|---" * (head.count(" | ") + 1) + "|", *below]
         text = text.replace("{{ " + rows.__name__ + " }}", "\n".join(lines))
@@ -54,11 +55,24 @@ def models():
 
 def machine():
     """What the reference scene was measured on."""
-    answer = read_study(GALLERY / "work_precision_fmr.h5")["answer"]
-    yield "reference solution", "second, and its difference", "machine"
+    study = read_study(GALLERY / "work_precision_fmr.h5")
+    answer = study["answer"]
+    yield "reference solution", "second, and its difference", "machine", "solvers"
     judges, on = answer["judges"], answer["machine"]
     yield (judges["exact"], f"{judges['second']}, {number(answer['judge_error'][answer['where']])}",
-           f"{on['processor']}, {on['cores']} cores")  # fmt: skip
+           f"{on['processor']}, {on['cores']} cores", study.get("solvers", "of no name"))  # fmt: skip
+
+
+def quickness():
+    """What it costs to begin, to be many, to be whole: ratios and their goals."""
+    found = json.loads((GALLERY / "quickness.json").read_text())
+    on = found["machine"]
+    libraries = ", ".join(f"{name} {on[name]}" for name in ("python", "numba", "numpy", "scipy"))
+    yield "figure", "ratio", "goal", "s", "over, s"
+    for name, row in found["rows"].items():
+        yield name, number(row["ratio"], 3), number(row["goal"]), number(row["seconds"], 3), number(row["over"], 3)
+    busy = f"{on['cores']} cores under a load of {number(on['load'])}"
+    yield f"{on['date']}, {on['processor']}, {busy}; {libraries}; solvers {on['solvers']}", *4 * ("",)
 
 
 def scenarios():

@@ -16,7 +16,7 @@ def refused(*words, cwd) -> str:
     """The line with which a sweep is refused."""
     answer = sealdyn(*SWEEP, *words, cwd=cwd)
     assert answer.code == 2 and answer.out == "" and answer.err.endswith("\n")
-    lines = [line for line in answer.err.splitlines() if not line.startswith("first run on this machine")]
+    lines = [line for line in answer.err.splitlines() if not line.startswith("compiling kernels")]
     assert len(lines) == 1, answer.err
     as_json = sealdyn(*SWEEP, *words, "--json", cwd=cwd)
     assert as_json.code == 2 and json.loads(as_json.out) == {"status": "invalid", "message": lines[0]}
@@ -42,7 +42,7 @@ def test_a_process_that_finds_no_scheduler_says_nothing_more_at_its_end(tmp_path
     words = [sys.executable, "-c", program, *map(str, SWEEP), "--scheduler", "tcp://127.0.0.1"]
     ended = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True)
     # What a slow machine is told besides.
-    slow = ("first run on this machine", "making ready")
+    slow = ("compiling kernels", "making ready")
     lines = [line for line in ended.stderr.splitlines() if not line.startswith(slow)]
     assert ended.returncode == 2 and ended.stdout == "" and len(lines) == 1, ended.stderr
 

@@ -40,6 +40,17 @@ def assert_rows(path, stop):
         np.testing.assert_array_equal(column(path, name), expected.astype(float))
 
 
+def test_what_was_looked_at_once_is_looked_at_again_when_it_has_changed(tmp_path):
+    run = writer(tmp_path / "run.h5")
+    run.append(rows(0, 3))
+    run.finish("ok", "done", {})
+    assert_rows(tmp_path / "run.h5", 3)
+    with h5py.File(tmp_path / "run.h5", "r+") as file:
+        file.attrs["message"] = "well done"
+    with pytest.raises(ArchiveError, match="altered"):
+        column(tmp_path / "run.h5", "h_min")
+
+
 @pytest.mark.parametrize("expected", [0, 299, 310, 5000])
 @pytest.mark.parametrize("in_place", [1 << 28, 100])
 def test_whatever_room_was_kept_a_finished_file_has_its_rows_alone(tmp_path, monkeypatch, expected, in_place):

@@ -65,7 +65,8 @@ def test_a_file_written_once_is_one_written_bit_by_bit(tmp_path):
         run.events([{"kind": "touch", "time": 0.01, "value": 1.0, "text": "there"}])
         assert archive.partial_path(tmp_path / name / "run.h5").exists() == (name == "often")
         with h5py.File(run.finish("ok", "done", {"a": 1}), "r") as file:
-            found = {".": dict(file.attrs) | {"created": ""}}
+            # The seal is of the instant, too.
+            found = {".": dict(file.attrs) | {"created": "", "seal": ""}}
             file.visititems(lambda name, item, found=found: found.update({name: (item[()], dict(item.attrs))})
                             if isinstance(item, h5py.Dataset) else found.update({name: dict(item.attrs)}))  # fmt: skip
         contents.append(found)

@@ -6,7 +6,10 @@ from time import sleep
 import numba.core.event
 import pytest
 
+from sealdyn.kernel_cache import compiling
+from sealdyn.numerics.parallel import Checkpoint, processes
 from sealdyn.scenario.reader import read_scenario
+from sealdyn.studies import _runner
 from sealdyn.studies._runner import StudyContext, run_study
 from sealdyn.terminal import Progress
 
@@ -16,6 +19,8 @@ SCENARIOS = Path(__file__).parents[2] / "scenarios"
 @pytest.fixture
 def shown():
     bar = Progress()
+    # As it is entered, but for the timer.
+    compiling.append(bar._compile)
     bar._show()
     yield bar
     bar.__exit__()
@@ -66,3 +71,18 @@ def test_a_study_says_its_name_and_no_points_that_there_are_none(tmp_path):
     tools = StudyContext(None, None, lambda *now: seen.append(now))
     count = len(seen)
     assert tools.map(len, [], "cost") == [] and len(seen) == count
+
+
+def identity(point):
+    return point
+
+
+@pytest.mark.parametrize("least, lines", [(0.0, 1), (1e9, 0)])
+def test_what_takes_long_says_after_its_first_point_how_long(tmp_path, monkeypatch, capsys, least, lines):
+    """Once, and not of points that were kept from before."""
+    monkeypatch.setattr(_runner, "LONG", least)
+    tools = StudyContext(Checkpoint(tmp_path / "kept", ""), processes(1), lambda *now: None)
+    tools.map(identity, [{"x": 1}], "cost")
+    tools.map(identity, [{"x": k} for k in range(5)], "cost")
+    told = capsys.readouterr().err.splitlines()
+    assert len(told) == lines and all("3 are left" in line for line in told)

@@ -2,10 +2,16 @@
 
 import re
 from html import unescape
+from pathlib import Path
 
 import sealdyn
+from sealdyn.archive import read_study
+from sealdyn.kernel_cache import solvers_digest
+from sealdyn.report.charts.study_work_precision import caption
 from sealdyn.report.review import review, told
 from sealdyn.report.text import question_of
+
+GALLERY = Path(__file__).parents[2] / "outputs" / "gallery"
 
 
 def words_of(path):
@@ -35,3 +41,15 @@ def test_a_page_of_one_scene_says_once_what_its_parts_share(tmp_path):
     assert words.count("No published numbers were held") == 1 and html.count("<td>cold</td>") == 1
     assert html.count(f"<h2>{question_of(scenario.question)}</h2>") == 1 and "equilibrium (s.h5)</h2>" in html
     assert html.count('All as in <a href="#part1">fms_reference, run</a>.') == 5
+
+
+def test_pages_and_charts_of_other_solvers_say_that_they_are_older(tmp_path, monkeypatch):
+    quick = {"run.turns": 1, "run.samples_per_turn": 16}
+    sealdyn.run(sealdyn.example("fms_reference"), quick, out=tmp_path / "run.h5")
+    study = read_study(GALLERY / "work_precision_fmr.h5") | {"solvers": solvers_digest()}
+    for today, older in ((solvers_digest(), False), ("another", True)):
+        monkeypatch.setattr("sealdyn.report.text.solvers_digest", lambda today=today: today)
+        page = words_of(review([tmp_path / "run.h5"], tmp_path / "page.html"))
+        for words in (page, " ".join(caption(study).split())):
+            assert f"solvers {solvers_digest()}" in words
+            assert (f"{solvers_digest()}, older than another" in words) == older

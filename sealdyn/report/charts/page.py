@@ -17,7 +17,7 @@ from ..text import question_of
 from .palette import BLACK, GREY, PALE, STATUS
 
 LOOK = {
-    "font.size": 8.5, "lines.linewidth": 1.0, "legend.frameon": False, "legend.fontsize": 8,
+    "font.size": 8.5, "text.hinting": "none", "lines.linewidth": 1.0, "legend.frameon": False, "legend.fontsize": 8,
     "axes.titlesize": 9.5, "axes.titleweight": "bold", "axes.titlelocation": "left",
     "axes.spines.top": False, "axes.spines.right": False, "axes.axisbelow": True, "axes.formatter.useoffset": False,
     "axes.grid": True, "grid.color": PALE, "grid.linewidth": 0.5,

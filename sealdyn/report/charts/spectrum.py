@@ -1,6 +1,7 @@
 """What the tilt and the film are made of, in orders of shaft speed."""
 
 import numpy as np
+from matplotlib.ticker import NullLocator
 
 from ...numerics.order_spectrum import FOLDED, at_the_edge, located, order_spectrum, peaks
 from ...quantities import in_words
@@ -110,6 +111,8 @@ def show(ax, run: Run, read, title: str, name: str, colour: str, turns: float | 
     top = 2000 if share > FOLDED else 20
     ax.set(xlim=(-reach if two_sided else 0, reach), ylim=(largest * FLOOR, largest * top))
     decades(ax.yaxis)
+    # Ticks between five decades or more say little, and are a tenth of the drawing of a page.
+    ax.yaxis.set_minor_locator(NullLocator())
     decimals = max(0, int(np.ceil(-np.log10(resolution / 5))))
     for at in told:
         order, size = located(orders, amplitude, at)

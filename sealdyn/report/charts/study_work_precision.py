@@ -9,7 +9,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from ...archive import read_study
 from ...status import Status
-from ..text import question_of
+from ..text import question_of, solvers_words
 from .page import absent, look, save, shortened, study_page
 from .palette import BLUE, CONTACT, GREEN, GREY, LOOKS, ORANGE, PALE, PURPLE, SHORT, SKY, VERMILLION
 from .record import MILLISECONDS
@@ -205,7 +205,8 @@ def caption(info) -> str:
         libraries += f"; CVODE and IDA: {m['back_end']}"
     overrides = f" with {', '.join(info['overrides'])}" if info["overrides"] else ""
     words = (
-        f"Scenario {info['name']}{overrides}, {answer['scene']['turns']:.3g} turns; sealdyn {info['version']}. "
+        f"Scenario {info['name']}{overrides}, {answer['scene']['turns']:.3g} turns; sealdyn {info['version']}, "
+        f"solvers {solvers_words(info)}. "
         f"{m['processor']}, {m['cores']} cores (wall time {m.get('busy', 1.0):.2f} of the "
         f"processor's); {libraries}.\n"
         f"Wall time: fastest of {settings['repeats']} runs after warm-up, inside the method only.  Error: largest of "
