@@ -17,6 +17,7 @@ from .segments import Segment
 from .stick_slip import CAPTURE, FADE, ONSET_SPEED
 from .swept_motion import check_begins, check_covers, sweep_breaks
 from .unknowns import Unknowns
+from .warm_state import at_work
 
 
 class Model:
@@ -30,11 +31,13 @@ class Model:
     `capture_speed` (m/s) below which a ring on its secondary seal is captured; `algebraic` places of unknowns without
     mass and damping, or of the film's without a rate; `start` the first interval.  The scene names its film, unless a
     `film` is given (Film, films/_contract.py).  `film_error`: relative, of the film's
-    integrals (default a hundredth of the accuracy).
+    integrals (default a hundredth of the accuracy).  `given` the scene as it was, `heat` its WarmState (None without
+    `[film.heat]`): `scene` is as warm, throughout.
     """
 
     def __init__(self, scene: Scene, accuracy: float = 1e-6, observed=None, film=None, film_error=None):
-        made = None
+        self.given, made = scene, None
+        scene, self.heat = at_work(scene)
         if scene.stator.elastic is not None:
             from .elastic_ring import at_rest
 
@@ -56,7 +59,7 @@ class Model:
             # What a stuck ring holds is looked for between steps, from the motion of the rings alone.
             key = f"{RING_NAMES[self.unknowns.coulomb_rings[0]]}.secondary_seal.law"
             raise SceneError(key, "sticking beside a film with unknowns of its own", '"regularised"')
-        self._shifts, self._linear_scenes, self._still_films = {}, {}, {}
+        self._shifts, self._linear_scenes, self._still_films, self._warm = {}, {}, {}, {}
         self.algebraic = self.unknowns.algebraic(self.film_matrices()[1]) if self.unknowns.has_residual_form else []
         self.scales, self.reference_rate, self.shortest_period = self.unknowns.scales(self)
         self.capture_speed = CAPTURE * accuracy * self.clearance * self.reference_rate
@@ -67,7 +70,7 @@ class Model:
         that is observed; one of cells has no integrals to sharpen, and is the same."""
         if self.unknowns.film_unknowns:
             return self
-        return Model(self.scene, self.accuracy, None, self.film, share * self.film_error)
+        return Model(self.given, self.accuracy, None, self.film, share * self.film_error)
 
     def _imposed(self) -> list:
         """Everything that may be a table."""
@@ -159,12 +162,20 @@ class Model:
         """The linearised scene at an interval's start, or at another shaft speed (rad/s), or with aligned faces at
         another `shift` (m) of the gap (linearisation.py)."""
         interval = interval or self.start
+        if speed is not None and self.heat is not None:
+            return self.at_speed(float(speed)).linear_scene(shift=shift)
         if speed is not None:
             return linearisation.linear_scene(self, interval, speed, shift)
         key = interval.key, None if shift == self.axial_shift(interval) else shift
         if key not in self._linear_scenes:
             self._linear_scenes[key] = linearisation.linear_scene(self, interval, shift=key[1])
         return self._linear_scenes[key]
+
+    def at_speed(self, speed: float) -> "Model":
+        """The same with the warm state of another shaft speed (rad/s).  Raises NoWarmState."""
+        if speed not in self._warm:
+            self._warm[speed] = Model(at_work(self.given, speed)[0], self.accuracy, None, self.film, self.film_error)
+        return self._warm[speed]
 
     def still_film(self, interval: Interval, shift: float):
         """Slopes (condensation.py) of a film that is linear in the rates, at an interval's start without mean spin, the

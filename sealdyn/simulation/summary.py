@@ -21,6 +21,7 @@ from ..scene.radial import RadialScene
 from ..scene.rings import RING_NAMES, ROTOR, SMALL_TILT, STATOR
 from ..solvers.contract import Status
 from ..solvers.energy_audit import missing_energy
+from .heat import heat_cautions, heat_of
 from .plausibility import LAMINAR, cautions, couette_number, unit_warnings
 from .stability import found_alone, no_stability, stability
 
@@ -97,6 +98,7 @@ def parts(scenario, run, plan, outcome, tally, speeds: bool = True) -> dict:
             "max_power": tally.most("friction_power"),
             "temperature_rise": _temperature_rise(model, tally),
         },
+        "heat": lambda: heat_of(model.given, model.heat),
         "contact": _contact(run, outcome, tally),
         "secondary_seal": _secondary_seal(run),
         "film": _film(model, at, linear, tally, failed),
@@ -189,7 +191,8 @@ def _cautions(scenario, run, outcome, tally) -> list[Caution]:
     lost = missing_energy(outcome.energy_residual, model.accuracy)
     energy = [Caution(Concern.ENERGY, lost)] if lost else []
     found = cautions(scenario, run, outcome, leakage, heat, low, wear)
-    return [*run.cautions, *energy, *_blown_open(model, tally), *found]
+    warm = heat_cautions(model.given, model.heat) if model.heat is not None else []
+    return [*run.cautions, *energy, *_blown_open(model, tally), *found, *warm]
 
 
 def _blown_open(model, tally) -> list[Caution]:
