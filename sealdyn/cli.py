@@ -172,7 +172,9 @@ def run(
             result = simulate(
                 scenario, out, progress=bar, stop=lambda: bool(interruption.asked), resume=resume, allow_large=yes
             )
-        except (SceneError, ArchiveError) as error:
+        except SceneError as error:
+            raise Stop(error.status, f"{file}: {error}") from None
+        except ArchiveError as error:
             raise Stop(Status.INVALID, f"{file}: {error}") from None
         except OSError as error:
             raise not_written(error, out, left["words"]()) from None
@@ -246,7 +248,9 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
     with Progress() as bar:
         try:
             found = checked(scenario)
-        except (SceneError, ArchiveError) as error:
+        except SceneError as error:
+            raise Stop(error.status, f"{file}: {error}") from None
+        except ArchiveError as error:
             raise Stop(Status.INVALID, f"{file}: {error}") from None
         bar(1.0, 1.0, "ready")
     if as_json:

@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from ..faces.geometry import FACE_SIZE
+from ..numerics.piecewise_linear import initially
 from ..scene.film import aligned_gaps, coning_change
 from ..scene.rings import RING_NAMES
 from ..scene.scene import Scene, SceneError
@@ -38,6 +39,7 @@ class Model:
     def __init__(self, scene: Scene, accuracy: float = 1e-6, observed=None, film=None, film_error=None):
         self.given, made = scene, None
         scene, self.heat = at_work(scene)
+        self._warm = {} if self.heat is None else {float(initially(scene.shaft.speed)): self}
         if scene.stator.elastic is not None:
             from .elastic_ring import at_rest
 
@@ -59,7 +61,7 @@ class Model:
             # What a stuck ring holds is looked for between steps, from the motion of the rings alone.
             key = f"{RING_NAMES[self.unknowns.coulomb_rings[0]]}.secondary_seal.law"
             raise SceneError(key, "sticking beside a film with unknowns of its own", '"regularised"')
-        self._shifts, self._linear_scenes, self._still_films, self._warm = {}, {}, {}, {}
+        self._shifts, self._linear_scenes, self._still_films = {}, {}, {}
         self.algebraic = self.unknowns.algebraic(self.film_matrices()[1]) if self.unknowns.has_residual_form else []
         self.scales, self.reference_rate, self.shortest_period = self.unknowns.scales(self)
         self.capture_speed = CAPTURE * accuracy * self.clearance * self.reference_rate
@@ -174,7 +176,10 @@ class Model:
     def at_speed(self, speed: float) -> "Model":
         """The same with the warm state of another shaft speed (rad/s).  Raises NoWarmState."""
         if speed not in self._warm:
-            self._warm[speed] = Model(at_work(self.given, speed)[0], self.accuracy, None, self.film, self.film_error)
+            beside = self._warm[min(self._warm, key=lambda w: abs(w - speed))].heat
+            scene, heat = at_work(self.given, speed, beside)
+            self._warm[speed] = Model(scene, self.accuracy, None, self.film, self.film_error)
+            self._warm[speed].heat = heat
         return self._warm[speed]
 
     def still_film(self, interval: Interval, shift: float):

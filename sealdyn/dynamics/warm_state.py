@@ -28,6 +28,7 @@ from ..scene.contact import waves_of
 from ..scene.film import coned
 from ..scene.liquid import in_numbers, liquid_of
 from ..scene.scene import Closing, SceneError
+from ..status import Status
 from .equilibrium import ClosingForce, crossing, equilibria, settle
 from .interface import Asked, Interface, flow_at_rest, opening_law, rest_state
 
@@ -35,8 +36,12 @@ from .interface import Asked, Interface, flow_at_rest, opening_law, rest_state
 SCANNED, FIRST = 60, 1e-4
 # Relative step of differences; relative error of the film's integrals.
 STEP, FINE = 1e-4, 1e-10
+# Rise, as a share of the last, below which there is none.
+TINY = 1e-9
 # Halvings towards the rise at which a film holds no more.
 HALVINGS = 30
+# From rise to rise in looking for the balance of a speed nearby: first, and at most.
+WIDER, WIDEST = 1.1, 2.0
 # From clearance to clearance in following one, and how far it is followed from rise to rise.
 STRIDE, REACH = 1.03, 60
 
@@ -76,7 +81,7 @@ class Warming:
     at any rise, and its warm states.  Raises SceneError where no closing force is known."""
 
     def __init__(self, scene, speed: float | None = None):
-        self.law = _closing(_unheated(scene))
+        self.law, self.said = _closing(_unheated(scene))
         self.rings = {name: _numbers(scene, name, ring) for name, ring in scene.film.heat.rings.items()}
         self.conductance = sum(1.0 / ring.resistance for ring in self.rings.values())
         self.coning_per_kelvin = sum(ring.coning_per_watt / ring.resistance for ring in self.rings.values())
@@ -149,7 +154,7 @@ class Warming:
         return self.state(0.0, held) if (held := self.clearance(0.0)) else None
 
     @cached_property
-    def _scanned(self) -> list[WarmState]:
+    def scanned(self) -> list[WarmState]:
         """States along the rise, each at the clearance that its film holds, up to where it holds none."""
         found, near, rises = [], None, self.highest * np.concatenate([[0.0], np.geomspace(FIRST, 1.0, SCANNED)])
         for rise in map(float, rises):
@@ -177,7 +182,7 @@ class Warming:
     @cached_property
     def states(self) -> list[WarmState]:
         """Every warm state, the coolest first."""
-        scanned, found = self._scanned, []
+        scanned, found = self.scanned, []
         surplus = [self.surplus(state) for state in scanned]
         for k in range(len(scanned) - 1):
             low, high = scanned[k], scanned[k + 1]
@@ -242,11 +247,40 @@ class Warming:
         values = np.linalg.eigvals(np.array([squeezed, heated]))
         return complex(values[np.argmax(values.real)])
 
+    def working(self, near: WarmState | None = None) -> WarmState | None:
+        """The state that the seal works in, the coolest stable one; looked for beside one `near` first, that of a speed
+        nearby, whose stability is then that of the balance alone.  None if there is none."""
+        if near is not None:
+            return self._beside(near) if near.rise > 0.0 else None
+        return next((state for state in self.states if state.stable), None)
+
+    def _beside(self, near: WarmState) -> WarmState | None:
+        """The balance that continues one `near`, where the surplus falls; None if there is none."""
+        low = high = self._held(near.rise, near.clearance)
+        if low is None:
+            # No film so warm: from the cold on.
+            low = high = self.cold_state
+        wider = WIDER
+        while low is not None and high is not None:
+            if self.surplus(low) >= 0.0 > self.surplus(high):
+                return self._balanced(low, high)
+            if self.surplus(low) < 0.0:
+                low, high = self._held(low.rise / wider, low.clearance), low
+            else:
+                low, high = high, self._held(max(high.rise * wider, FIRST * self.highest), high.clearance)
+            wider = min(wider**2, WIDEST)
+        return None
+
+    def _held(self, rise: float, near: float) -> WarmState | None:
+        """The state at a rise (K) and the clearance that continues one `near` (m); None where no film holds."""
+        clearance = self.clearance(rise, near) if TINY * self.highest < rise < self.highest else None
+        return None if clearance is None else self.state(rise, clearance)
+
     def why_none(self) -> str:
         """Why there is no warm state, in words."""
-        if not self._scanned:
+        if not self.scanned:
             return "no film holds the closing force at any temperature of the liquid's table"
-        last = self._scanned[-1]
+        last = self.scanned[-1]
         if last.rise < self.highest * (1.0 - 1e-9):
             return f"the film collapses by heat: none holds the closing force {last.rise:.4g} K above the sealed liquid"
         end, times = self.sealed + last.rise - 273.15, last.power / ((self.conductance + last.carried) * last.rise)
@@ -270,16 +304,17 @@ def _unheated(scene):
     return replace(scene, film=in_numbers(replace(scene.film, heat=None)))
 
 
-def _closing(cold) -> ClosingForce:
-    """The closing force of a scene without heat: as given, or what holds its clearance."""
+def _closing(cold) -> tuple[ClosingForce, str]:
+    """The closing force of a scene without heat, as given or what holds its clearance, and a sentence."""
     film, closing = cold.film, cold.closing
     if film.clearance is not None:
-        return settle(cold, opening_law(cold))[1]
+        return settle(cold, opening_law(cold))[1::2]
     if closing.balance_ratio is None or closing.spring_force is None:
         raise SceneError("film.clearance", "nothing", "a length, or both balance_ratio and spring_force")
     area = math.pi * (film.outer_radius**2 - film.inner_radius**2)
     outer = initially(film.outer_pressure) >= initially(film.inner_pressure)
-    return ClosingForce(area, closing.balance_ratio, closing.spring_force, outer)
+    law = ClosingForce(area, closing.balance_ratio, closing.spring_force, outer)
+    return law, "closing force from balance ratio and spring"
 
 
 def _numbers(scene, name: str, ring) -> RingHeat:
@@ -294,22 +329,26 @@ def _warming(asked, speed) -> Warming:
 
 def warming(scene, speed: float | None = None) -> Warming:
     """The `Warming` of a scene with `[film.heat]`, at its own or another shaft speed (rad/s)."""
-    return _warming(Asked(scene, None), speed)
+    return _warming(Asked(scene), speed)
 
 
 class NoWarmState(SceneError):
-    """Heat for which no state of the film exists."""
+    """Heat that nothing balances: a film that collapses by it, or beyond the table of its liquid."""
+
+    status = Status.COLLAPSED
 
 
-def at_work(scene, speed: float | None = None):
+def at_work(scene, speed: float | None = None, near: WarmState | None = None):
     """The scene as it works: the numbers of its liquid in place of the liquid, faces coned by the heat that is made at a
-    shaft speed (rad/s; its own), clearance and closing force of that; and its WarmState, None without `[film.heat]`.
-    Raises NoWarmState."""
+    shaft speed (rad/s; its own), clearance and closing force of that; and its WarmState, None without `[film.heat]`,
+    looked for beside one `near` first.  Raises NoWarmState."""
     if scene.film.heat is None:
         return (scene if scene.film.liquid is None else _unheated(scene)), None
-    found = warming(scene, speed)
-    stable = [state for state in found.states if state.stable]
-    if not stable:
+    found = warming(scene) if speed is None else Warming(scene, speed)
+    state = found.working(near)
+    if state is None and near is not None:
+        raise NoWarmState("shaft.speed", f"no warm state at {speed:.6g} rad/s", "a speed whose heat is carried away")
+    if state is None:
         why = found.why_none() if not found.states else "every balance of heat is unstable"
-        raise NoWarmState("film.heat", why, "a seal whose heat its rings and leakage carry away")
-    return found.at(stable[0].rise, stable[0].clearance), stable[0]
+        raise NoWarmState("film.heat", f"no warm state: {why}", "a seal whose heat its rings and leakage carry away")
+    return found.at(state.rise, state.clearance), state
