@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from sealdyn.scenario.reader import ScenarioError, parse_scenario, with_values
 from sealdyn.scenario.templates import template
 from sealdyn.scene import variants
-from sealdyn.scene.rings import DENSITIES, INERTIAL, Body
+from sealdyn.scene.rings import INERTIAL, MATERIALS, Body
 from sealdyn.studies.stability.study import si_axis
 
 FMR = (Path(__file__).parents[2] / "scenarios" / "fmr_reference.toml").read_text()
@@ -35,13 +35,13 @@ def inertias(ring):
 @pytest.mark.core
 @settings(deadline=None)
 @given(
-    st.floats(0.0, 0.1), st.floats(1e-4, 0.1), st.floats(1e-4, 0.3), st.sampled_from([*DENSITIES]), st.floats(100, 2e4)
+    st.floats(0.0, 0.1), st.floats(1e-4, 0.1), st.floats(1e-4, 0.3), st.sampled_from([*MATERIALS]), st.floats(100, 2e4)
 )
 def test_the_integrals_over_the_ring(inner, width, length, material, density):
     """Against quadrature over radius and length: r dr dz 2 pi rho times 1, r^2, and r^2/2 + z^2."""
     outer = inner + width
     for body in (Body(inner, outer, length, material), Body(inner, outer, length, density=density)):
-        rho = DENSITIES[material] if body.density is None else density
+        rho = MATERIALS[material].density if body.density is None else density
 
         def over(weight, rho=rho):
             # Exact: the integrands are polynomials of degree 3 and 2.
