@@ -115,14 +115,14 @@ def face_moment(mean_radius: float, inner: float, outer: float, at_inner: float,
 def coning_per_speed_squared(
     inner_radius: float, outer_radius: float, length: float, modulus: float, poisson: float, density: float
 ) -> float:
-    """Coning (rad s^2) over the square of the speed of a ring that turns: -(L/2) nu (1 + nu) rho r_m w^2/E.
+    """Coning (rad s^2) over the square of the speed of a ring that turns: -(L/2) nu (1 + nu) rho r_m/E.
 
-    **Source** derived here: by Poisson's ratio the hoop stress shortens the ring along the shaft, most where it is
-    largest.
-    **Valid** rectangular sections, L up to twice the width (1 to 4 %).
+    **Source** derived here: by Poisson's ratio the stresses of the spin shorten the ring along the shaft, most at its
+    bore; held against finite elements.
+    **Valid** rectangular sections, L up to twice the width: within 4 %.
     """
-    width, mean = outer_radius - inner_radius, (inner_radius + outer_radius) / 2
-    return -length / 2 * poisson * (1 + poisson) * density * mean * width**2 / modulus
+    mean = (inner_radius + outer_radius) / 2
+    return -length / 2 * poisson * (1 + poisson) * density * mean / modulus
 
 
 class Cooling(NamedTuple):

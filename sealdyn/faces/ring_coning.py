@@ -11,7 +11,9 @@ of its width also bows: the slope omega(r) = int^r (1 + nu) alpha (-dT/dx) dr of
 that runs on the film than over the whole section.
 **Source** cylindrical shell of Timoshenko & Woinowsky-Krieger, with thermal strains; derived and held against finite
 elements here (tests/ladder/test_heated_ring.py).
-**Valid** rectangular sections; coning by heat within 4 %, by a single pressure within 3 to 8 % up to L = 2 w.
+**Valid** rectangular sections.  Of 40 drawn rings wetted outside the coning by heat is within 4 % of finite elements up
+to w/a = 0.3 and within 7 % up to 0.4.  In the bore of long thick rings its two parts nearly cancel, and the rest is off
+by up to 0.1 alpha R r_m/L, the whole of it there.  By a single pressure within 3 to 8 % up to L = 2 w.
 """
 
 from dataclasses import dataclass

@@ -4,7 +4,9 @@ Finite volumes over radius and depth: heat enters evenly over the band, liquid t
 to the O-ring and on the wetted face beside the band, all else is insulated.  Temperatures count from the liquid's.
 **Source** conservation of heat; conduction between cells as of annuli.  Held against finite elements in
 tests/ladder/test_heated_ring.py.
-**Valid** conductivity and convection that do not depend on temperature; resistance within 1 %.
+**Valid** conductivity and convection (more than 0) that do not depend on temperature.  Of 40 drawn rings (w/a 0.08 to
+0.4, L/w 0.6 to 3.5, h w/k up to 22) the resistance is within 2.3 % of finite elements (1 % up to h w/k = 6), the time
+constant within 1 %, the hottest place within 1.2 %.
 """
 
 from dataclasses import dataclass
@@ -17,8 +19,9 @@ from .ring_coning import RingBody, coning_by_bow, coning_by_temperature, crown, 
 RADIAL, AXIAL, GRADING = 24, 32, 1.5
 # Cells of the band at least, and of each stretch beside it.
 FEWEST_IN_BAND, FEWEST_BESIDE = 8, 2
-# Shifts over 1/(time constant) whose answers the reduced states span.
-SHIFTS = (0.0, 10.0, 100.0)
+# Shifts over 1/(time constant) whose answers the reduced states span: of those tried the ones that keep 18 rings within
+# 1.5 % of the whole grid at all times.
+SHIFTS = (0.0, 4.0, 80.0)
 
 
 @dataclass(frozen=True)
