@@ -85,8 +85,8 @@ class Ring:
         self.mesh = Elements(lines(marks, first, growth), lines(deep, first, growth))
 
     def heated(self):
-        """One watt even over the band: resistance (K/W), time_constant (s), hottest (K/W), temperature (nodes,),
-        coning (rad/W) and crown (m/W)."""
+        """One watt even over the band: resistance (K/W), time_constant (s), hottest (K/W), at_o_ring (K/W, where the
+        wetted side ends), coning (rad/W) and crown (m/W)."""
         ring, mesh = self.ring, self.mesh
         slope = np.einsum("eap,ebp,ep->eab", mesh.by_r, mesh.by_r, mesh.weight)
         slope += np.einsum("eap,ebp,ep->eab", mesh.by_x, mesh.by_x, mesh.weight)
@@ -106,7 +106,7 @@ class Ring:
         on_face = steady[: mesh.across][self._band()]
         return SimpleNamespace(
             resistance=resistance, time_constant=steady @ (store @ steady) / resistance, hottest=np.max(on_face),
-            temperature=steady, coning=coning, crown=crown,
+            at_o_ring=steady[self.mesh.edge(*self._wetted()[0])[0][-1, -1]], coning=coning, crown=crown,
         )  # fmt: skip
 
     def pressed(self, loads):

@@ -68,9 +68,10 @@ def ring_fin(
 
 
 def _section(wet: float, dry: float) -> tuple[float, float]:
-    """delta k and d (m) of the fin: w/3 and w/2 of a thin ring, where the terms of the formulas cancel."""
+    """delta k and d (m) of the fin: w/3 and w/2 of a thin ring, where the terms of the formulas cancel to less than the
+    limit is off."""
     both = wet**2 - dry**2
-    if abs(wet - dry) < 1e-5 * wet:
+    if abs(wet - dry) < 2e-4 * wet:
         return abs(wet - dry) / 3, abs(wet - dry) / 2
     log = math.log(wet / dry)
     scale = 2 * wet / abs(both)

@@ -74,13 +74,13 @@ def test_the_fin_by_integrals(length, convection, wet_bore):
     assert fin.coning_per_watt == pytest.approx(turn + axial, abs=1e-4 * (abs(turn) + abs(axial)))
 
 
-def test_the_formulas_go_on_into_thin_sections_and_short_rings():
-    """Where their terms cancel, a series and the limits of a thin ring follow without a step."""
-    for length in (1e-5, 1e-4, 3e-4):
-        below, above = (ring_fin(0.03, 0.036, x, convection=100.0, **CARBON) for x in (length, length * (1 + 1e-6)))
-        assert below == pytest.approx(above, rel=1e-4)
-    thin, thinner = (ring_fin(1.0, 1.0 + w, 0.01, convection=5e3, **CARBON) for w in (1.01e-5, 0.99e-5))
-    assert thin.resistance * 1.01**0.5 == pytest.approx(thinner.resistance * 0.99**0.5, rel=1e-3)
+def test_formulas_go_on_into_thin_sections_and_short_rings():
+    """Where terms cancel, a series (z = 0.02) and limits of a thin ring (w/r = 2e-4) follow without a step."""
+    short = [ring_fin(0.03, 0.036, 0.001, convection=h, **CARBON).coning_per_watt for h in np.linspace(20.0, 24.0, 41)]
+    assert np.ptp(short) < 3e-4 * short[0]
+    widths = 2e-4 * np.array([0.97, 0.99, 1.01, 1.03])
+    thin = np.log([ring_fin(1.0, 1.0 + width, 0.01, convection=1e12, **CARBON) for width in widths])
+    assert np.abs(np.diff(thin, 2, axis=0)).max() < 2e-3
 
 
 def test_moments_by_quadrature():
@@ -108,10 +108,11 @@ def test_spin_closes_a_film_a_little():
 
 def test_cooling_by_the_analogy_of_heat_and_friction():
     """Becker's convection within -31 and +32 % of it from Re 1e4 to 3e6, in water."""
-    for reynolds in np.geomspace(1e4, 3e6, 9):
+    for reynolds, more in ((1e4, 0.32), (1e5, 0.10), (1e6, -0.18), (3e6, -0.31)):
         speed = 2 * reynolds * WATER[1] / WATER[0] / 0.072**2
         assert turning_reynolds(speed, 0.072, *WATER[:2]) == pytest.approx(reynolds)
-        assert 0.68 < becker(speed, 0.072, *WATER) / chilton_colburn(speed, 0.072, *WATER) < 1.33
+        found = becker(speed, 0.072, *WATER) / chilton_colburn(speed, 0.072, *WATER)
+        assert found == pytest.approx(1 + more, abs=0.01)
 
 
 def test_cooling_of_the_rings_of_a_pump():

@@ -114,6 +114,7 @@ def test_other_rings_against_finite_elements(name):
     assert found.time_constant == pytest.approx(expected.time_constant, rel=0.01)
     assert found.hottest * found.resistance == pytest.approx(expected.hottest, rel=0.02)
     assert found.crown_per_watt == pytest.approx(expected.crown, rel=0.15)
+    assert found.at_o_ring * found.resistance == pytest.approx(expected.at_o_ring, rel=0.05)
 
 
 @pytest.mark.parametrize("wet", ["outer", "bore"])
