@@ -43,7 +43,7 @@ TINY = 1e-9
 # Halvings towards the rise at which a film holds no more.
 HALVINGS = 30
 # From rise to rise in looking for the balance of a speed nearby: first, and at most.
-WIDER, WIDEST = 1.1, 2.0
+WIDER, WIDEST = 1.1, 1.5
 # From clearance to clearance in following one, and how far it is followed from rise to rise.
 STRIDE, REACH = 1.03, 60
 
@@ -292,6 +292,10 @@ class Warming:
         nearby, whose stability is then that of the balance alone.  None if there is none."""
         if near is not None:
             return self._beside(near) if near.rise > 0.0 else None
+        if self.cold_state is not None and (found := self._beside(self.cold_state)) is not None:
+            found = self._judged(found)
+            if found.stable:
+                return found
         return next((state for state in self.states if state.stable), None)
 
     def _beside(self, near: WarmState) -> WarmState | None:

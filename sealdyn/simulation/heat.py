@@ -91,16 +91,16 @@ def heat_cautions(scene, state: WarmState) -> list[Caution]:
     found, words = warming(scene), []
     liquid, film = liquid_of(scene.film), scene.film
     if (radius := boiling_radius(found, state)) is not None:
-        words.append(f"boils at the low pressure, up to r = {radius * 1e3:.5g} mm: no film here knows vapour")
+        words.append(f"the film boils at the low pressure, up to r = {radius * 1e3:.5g} mm: no film here knows vapour")
     elif (radius := boiling_radius(found, state, HOTTEST)) is not None:
-        words.append(f"may boil where the face is hottest, up to r = {radius * 1e3:.5g} mm")
+        words.append(f"the film may boil where the face is hottest, up to r = {radius * 1e3:.5g} mm")
     for said, holds in (
-        ("beyond Becker's Reynolds numbers of 800 to 1e5: the convection is extrapolated", "extrapolated"),
-        ("narrower than a third of its ring, whose resistance is known less well", "narrow"),
-        ("on a ring longer than four times its width, whose coning is known less well", "long"),
+        ("the convection is extrapolated beyond Becker's Reynolds numbers of 800 to 1e5", "extrapolated"),
+        ("the band is narrower than a third of its ring: the resistance is known less well", "narrow"),
+        ("the ring is longer than four times its width: its coning is known less well", "long"),
     ):
         names = [name for name, ring in found.rings.items() if getattr(ring, holds)]
-        words += [f"is {said} ({' and '.join(names)})"] if names else []
+        words += [f"{said} ({' and '.join(names)})"] if names else []
     share = state.carried * state.rise / state.power if state.power else 0.0
     if share > CARRIES:
         words.append(f"leakage carries {100 * share:.3g} % of the heat: the rise is at most half as high as told")
@@ -114,7 +114,7 @@ def heat_cautions(scene, state: WarmState) -> list[Caution]:
         x = math.sqrt(nahme / 8.0)
         factor = math.asinh(x) / (x * math.sqrt(1.0 + x * x))
         words.append(f"Nahme number {nahme:.3g}: its friction is {factor:.3g} of that of one temperature")
-    return [Caution(Concern.HEATING, f"the warm film {said}") for said in words]
+    return [Caution(Concern.HEATING, f"heat: {said}") for said in words]
 
 
 def film_speed(scene):
