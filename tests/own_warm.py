@@ -3,7 +3,7 @@ the package is used.
 
 The film is aligned, Reynolds' over the radius, with the liquid of the local temperature, which is that of both faces;
 friction, asperities and the pressure's flow heat it where they work, and the leakage carries heat along.  The gap is
-the cold cone and the displacement of both faces.  Sealed from outside.
+the cold cone and the displacement of both faces.  `warm` is for seals with the pressure outside.
 """
 
 from dataclasses import dataclass
@@ -13,15 +13,18 @@ from typing import Any
 import numpy as np
 from own_ring import Ring
 from scipy.integrate import cumulative_trapezoid
-from scipy.optimize import brentq
+from scipy.optimize import brentq, root
 
 POINTS = 1201
 
 
 @dataclass(frozen=True)
 class Seal:
-    """`rings` as own_ring.py takes them, with one band; SI units, temperatures in K.  `viscosity(T)` and `heat(T)`, the
-    heat of a volume (J/(m^3 K)); asperities by their half height `touch` (m), `strength` (Pa) and `friction`."""
+    """`rings` as own_ring.py takes them, with one band; SI units, temperatures in K.
+
+    `pressure` outside above inside (Pa), `viscosity(T)` and `heat(T)`, the heat of a volume (J/(m^3 K)); asperities by
+    their half height `touch` (m), `strength` (Pa) and `friction`.
+    """
 
     rings: tuple[Any, Any]
     coning: float
@@ -48,9 +51,10 @@ def film(seal, r, gap, rise):
     friction, asperities and pressure, along the radii r (m) with film `gap` (m) and `rise` (K)."""
     viscosity = seal.viscosity(seal.temperature + rise)
     resist = cumulative_trapezoid(viscosity / (r * gap**3), r, initial=0.0)
-    leakage = np.pi / 6 * seal.pressure / resist[-1]
+    leakage, share = np.pi / 6 * abs(seal.pressure) / resist[-1], resist / resist[-1]
+    share = share if seal.pressure > 0 else 1 - share
     touching = asperity_share(gap / seal.touch) * seal.strength if seal.touch else 0 * r
-    force = np.trapezoid((seal.pressure * resist / resist[-1] + touching) * 2 * np.pi * r, r)
+    force = np.trapezoid((abs(seal.pressure) * share + touching) * 2 * np.pi * r, r)
     viscous, rubbed = viscosity * (seal.speed * r) ** 2 / gap, seal.friction * touching * seal.speed * r
     pressed = 12 * viscosity / gap**3 * (leakage / (2 * np.pi * r)) ** 2
     return force, np.trapezoid(touching * 2 * np.pi * r, r), leakage, (viscous, rubbed, pressed)
@@ -59,7 +63,7 @@ def film(seal, r, gap, rise):
 def closing_force(seal):
     """Above the outside of the low pressure, N."""
     inner, outer = seal.rings[0].face_inner_radius, seal.rings[0].face_outer_radius
-    return seal.balance_ratio * seal.pressure * np.pi * (outer**2 - inner**2) + seal.spring_force
+    return seal.balance_ratio * abs(seal.pressure) * np.pi * (outer**2 - inner**2) + seal.spring_force
 
 
 def clearance_of(seal, r, shape, rise):
@@ -114,21 +118,60 @@ def warm(seal, damping=0.3, finest=40):
 
 
 def one_temperature(seal, resistances, conings):
-    """The same seal by two numbers a ring, K/W and rad/W: film and faces of one temperature, found by bisection."""
-    r = np.linspace(seal.rings[0].face_inner_radius, seal.rings[0].face_outer_radius, POINTS)
+    """The same seal by two numbers a ring, K/W and rad/W: film and faces of one temperature, the smallest rise (K) at
+    which heat and cooling are in balance; None without one."""
     conduct, turn = sum(1 / x for x in resistances), sum(x / y for x, y in zip(conings, resistances, strict=True))
 
     def state(rise):
-        shape, warmed = (seal.coning + turn * rise) * (r - r[0]), np.full(POINTS, rise)
-        clearance = clearance_of(seal, r, shape, warmed)
-        _, contact, leakage, heats = film(seal, r, clearance + shape, warmed)
-        power = sum(np.trapezoid(heat * 2 * np.pi * r, r) for heat in heats)
-        return SimpleNamespace(
-            rise=rise, coning=seal.coning + turn * rise, clearance=clearance, power=power, leakage=leakage,
-            contact=contact, over=power - (conduct + seal.heat(seal.temperature + rise) * leakage) * rise,
-        )  # fmt: skip
+        found = at_coning(seal, rise, seal.coning + turn * rise)
+        found.over = found.power - (conduct + seal.heat(seal.temperature + rise) * found.leakage) * rise
+        return found
 
-    return state(brentq(lambda rise: state(rise).over, 1e-3, 80.0, xtol=1e-9))
+    below = 1e-3
+    for rise in np.linspace(0.5, 80.0, 60):
+        # The film closes: no more of it.
+        if seal.pressure * (seal.coning + turn * rise) <= 0.0:
+            return None
+        if state(rise).over < 0.0:
+            return state(brentq(lambda rise: state(rise).over, below, rise, xtol=1e-9))
+        below = rise
+    return None
+
+
+def at_coning(seal, rise, coning):
+    """The film at one temperature and a plain cone: `power` (W), `leakage`, `clearance`, `contact`."""
+    r = np.linspace(seal.rings[0].face_inner_radius, seal.rings[0].face_outer_radius, POINTS)
+    shape, warmed = coning * (r - r[0]), np.full(POINTS, rise)
+    clearance = clearance_of(seal, r, shape, warmed)
+    _, contact, leakage, heats = film(seal, r, clearance + shape, warmed)
+    power = sum(np.trapezoid(heat * 2 * np.pi * r, r) for heat in heats)
+    return SimpleNamespace(
+        rise=rise, coning=coning, clearance=clearance, power=power, leakage=leakage, contact=contact
+    )  # fmt: skip
+
+
+def slow_root(seal, state, rings, guess):
+    """The root s (1/s, complex) of 1 = H_coning X(s) + H_T Z(s) beside a warm `state`: how a small change of it grows.
+
+    Each of the `rings` answers heat by states: time_constants (s), resistances (K/W), conings (rad/W) and what follows
+    at once, immediate_resistance and immediate_coning; their faces have one temperature.
+    """
+    more = [at_coning(seal, state.rise, state.coning * x).power for x in (1 - 1e-4, 1 + 1e-4)]
+    warmer = [at_coning(seal, state.rise + x, state.coning).power for x in (-0.01, 0.01)]
+    by_coning, by_rise = np.diff(more)[0] / (2e-4 * state.coning), np.diff(warmer)[0] / 0.02
+    by_rise -= seal.heat(seal.temperature + state.rise) * state.leakage
+
+    def lacking(at):
+        s = complex(*at)
+        rises = [x.immediate_resistance + np.sum(x.resistances / (1 + s * x.time_constants)) for x in rings]
+        turns = [x.immediate_coning + np.sum(x.conings / (1 + s * x.time_constants)) for x in rings]
+        tied = 1 / sum(1 / x for x in rises)
+        left = 1 - tied * (by_coning * sum(x / y for x, y in zip(turns, rises, strict=True)) + by_rise)
+        return left.real, left.imag
+
+    found = root(lacking, (guess.real, guess.imag), tol=1e-10)
+    assert found.success
+    return complex(*found.x)
 
 
 def shapes(nodes, r):

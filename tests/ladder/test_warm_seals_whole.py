@@ -1,10 +1,12 @@
 """Warm seals whole, by finite elements of both rings, beside two numbers a ring from its drawing."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
-from own_warm import Seal, one_temperature, warm
+from own_warm import Seal, one_temperature, slow_root, warm
+from scipy.optimize import brentq
 
 from sealdyn.faces.ring_coning import RingBody
 from sealdyn.faces.ring_heat import ring_heat
@@ -36,10 +38,10 @@ def oil_heat(kelvin):
     return 870.0 * 2000.0 + 0.0 * kelvin
 
 
-def ring(inner, outer, length, material, convection, band, wetted=None):
+def ring(inner, outer, length, material, convection, band, wetted=None, wet="outer"):
     """A ring by its radii and lengths in mm."""
     sizes = [1e-3 * x for x in (inner, outer, length, *band)]
-    return RingBody(*sizes, **material, convection=convection, wetted_length=1e-3 * (wetted or length))
+    return RingBody(*sizes, **material, convection=convection, wetted_length=1e-3 * (wetted or length), wet=wet)
 
 
 PUMP = ring(23, 32, 20, CARBON, 12e3, (25, 30), 12), ring(24, 32, 10, CARBIDE, 19e3, (25, 30))
@@ -139,3 +141,32 @@ def test_what_one_temperature_is_worth(name):
     cold = SEALS[name].coning
     assert 0.84 < (rung.coning - cold) / (full.coning - cold) < 1.0
     assert 1.05 < full.hottest / full.rise < 1.6
+
+
+INSIDE = Seal(
+    (
+        ring(23, 32, 20, CARBON, 12e3, (25, 30), 12, "bore"),
+        ring(24, 32, 10, CARBIDE, 18e3, (25, 30), wet="bore"),
+    ), -2e-4, -1e6, 0.0, 0.75, 40.0, 303.15, water_viscosity, water_heat,
+)  # fmt: skip
+
+
+def test_a_seal_pressurised_inside_hunts_before_it_folds():
+    """Onset of hunting at 7408 rpm with a period of 16 s, fold at 7935 rpm (both rings by another program's finite
+    volumes), from six states a ring; one temperature would see nothing below the fold, its loop gain is 0.32."""
+    rings = [ring_heat(body) for body in INSIDE.rings]
+    numbers = [x.resistance for x in rings], [x.coning_per_watt for x in rings]
+
+    def state(rpm):
+        seal = replace(INSIDE, speed=rpm * np.pi / 30)
+        return seal, one_temperature(seal, *numbers)
+
+    def slow(rpm):
+        return slow_root(*state(rpm), rings, 0.39j)
+
+    onset = brentq(lambda rpm: slow(rpm).real, 7300.0, 7450.0, xtol=1.0)
+    assert onset == pytest.approx(7408.0, rel=0.01)
+    assert 2 * np.pi / slow(onset).imag == pytest.approx(16.0, rel=0.05)
+    assert slow(7300.0) == pytest.approx(-0.107 + 0.324j, abs=0.03)
+    # There is a warm state up to the fold.
+    assert state(0.995 * 7935)[1] is not None and state(1.01 * 7935)[1] is None
