@@ -109,7 +109,7 @@ class Warming:
     def under(self, scene) -> "Warming":
         """The same rings and closing force law at the conditions of another scene: speed, pressures, temperature."""
         other = copy(self)
-        for found in ("cold_state", "scanned", "states"):
+        for found in ("cold_state", "scanned", "states", "_coolest"):
             vars(other).pop(found, None)
         other._begin(scene)
         return other
@@ -292,6 +292,10 @@ class Warming:
         nearby, whose stability is then that of the balance alone.  None if there is none."""
         if near is not None:
             return self._beside(near) if near.rise > 0.0 else None
+        return self._coolest
+
+    @cached_property
+    def _coolest(self) -> WarmState | None:
         if self.cold_state is not None and (found := self._beside(self.cold_state)) is not None:
             found = self._judged(found)
             if found.stable:
