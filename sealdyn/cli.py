@@ -172,10 +172,8 @@ def run(
             result = simulate(
                 scenario, out, progress=bar, stop=lambda: bool(interruption.asked), resume=resume, allow_large=yes
             )
-        except SceneError as error:
+        except (SceneError, ArchiveError) as error:
             raise Stop(error.status, f"{file}: {error}") from None
-        except ArchiveError as error:
-            raise Stop(Status.INVALID, f"{file}: {error}") from None
         except OSError as error:
             raise not_written(error, out, left["words"]()) from None
     summary = {**result.summary, "figure": None}
@@ -248,10 +246,8 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
     with Progress() as bar:
         try:
             found = checked(scenario)
-        except SceneError as error:
+        except (SceneError, ArchiveError) as error:
             raise Stop(error.status, f"{file}: {error}") from None
-        except ArchiveError as error:
-            raise Stop(Status.INVALID, f"{file}: {error}") from None
         bar(1.0, 1.0, "ready")
     if as_json:
         print(json.dumps(found))

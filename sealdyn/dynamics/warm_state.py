@@ -1,28 +1,29 @@
 """Warm states: the temperature at which the heat that film and asperities make leaves through rings and leakage.
 
-Film and both faces have one temperature T = T_sealed + rise.  Each ring is a linear body: R (K/W), rise of its face over
-the heat that enters it, X (rad/W), its coning over that heat.  With G = sum 1/R, B = sum X/R and the leakage Q
+Film and both faces have one temperature T = T_sealed + rise.  Each ring is a linear body: R (K/W), rise of its face
+over the heat that enters it, X (rad/W), its coning over that heat.  With G = sum 1/R, B = sum X/R and the leakage Q
 
     H = torque x relative speed + Q |p_o - p_i| = (G + density specific_heat Q) rise
     coning = cold coning + B rise,   viscosity at T,   clearance: film + asperities = closing force
 
 and in time, the film squeezed with the damping D,
 
-    C rise' = H - (G + density specific_heat Q) rise,   C = sum time_constant/R,   D clearance' = opening - closing force
+    C rise' = H - (G + density specific_heat Q) rise,  C = sum time_constant/R,  D clearance' = opening - closing force
 
-**Source** derived; the field is Lebeck, *Principles and Design of Mechanical Face Seals* (1991), and Brunetiere, Tournerie
-& Frene (2003).
-**Valid** liquids; walls and film of one temperature, as a film of a micrometre has it (b mu U^2/k below 1), and where the
-leakage carries less than a third of the heat.
+**Source** derived; the field is Lebeck, *Principles and Design of Mechanical Face Seals* (1991), and Brunetiere,
+Tournerie & Frene (2003).
+**Valid** liquids; walls and film of one temperature, as a film of a micrometre has it (b mu U^2/k below 1), and where
+the leakage carries less than a third of the heat.
 """
 
 import math
+from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
 
-from ..faces.geometry import CONTACT_TORQUE, FLOW_INNER, SPIN_DIFFERENCE, TORQUE
+from ..faces.geometry import CONTACT_FORCE, CONTACT_TORQUE, DZ_RATE, FLOW_INNER, FORCE, SPIN_DIFFERENCE, TORQUE
 from ..numerics.piecewise_linear import PiecewiseLinear, initially
 from ..scene.contact import waves_of
 from ..scene.film import coned
@@ -57,10 +58,12 @@ class RingHeat:
 
 @dataclass(frozen=True)
 class WarmState:
-    """A state in which heat balances: `rise` (K) of the faces over the sealed liquid, `clearance` (m) and `coning` (rad)
-    then, `viscosity` (Pa s), heat made `power` (W), of it the asperities' `contact_power` and what the leakage spends
-    `flow_power`, `carried` (W/K) by the leakage, `loop_gain` dH/d(rise) over (G + carried), `slow` the least damped
-    eigenvalue (1/s, complex; None without time constants), and whether it is `stable`."""
+    """A state in which heat balances: `rise` (K) of the faces over the sealed liquid, `clearance` (m) and `coning`
+    (rad) then, `viscosity` (Pa s), heat made `power` (W), of it the asperities' `contact_power` and what the leakage
+    spends `flow_power`, `carried` (W/K) by the leakage, `loop_gain` dH/d(rise) over (G + carried), `slow` the least
+    damped
+    eigenvalue (1/s, complex; None without time constants), and whether it is `stable`; `torque` (N m) of film and
+    asperities, `excess` (N) of the opening force over the closing force, which is 0 at its clearance."""
 
     rise: float
     clearance: float
@@ -71,16 +74,18 @@ class WarmState:
     flow_power: float
     leakage: float
     carried: float
+    torque: float
+    excess: float
     loop_gain: float = math.nan
     slow: complex | None = None
     stable: bool = True
 
 
 class Warming:
-    """A scene with `[film.heat]` at one shaft speed (rad/s; that of its start): `rings` (RingHeat by name), what it is
-    at any rise, and its warm states.  Raises SceneError where no closing force is known."""
+    """A scene with `[film.heat]` at the conditions of its start: `rings` (RingHeat by name), what it is at any rise,
+    and its warm states.  Raises SceneError where no closing force is known."""
 
-    def __init__(self, scene, speed: float | None = None):
+    def __init__(self, scene):
         self.law, self.said = _closing(_unheated(scene))
         self.rings = {name: _numbers(scene, name, ring) for name, ring in scene.film.heat.rings.items()}
         self.conductance = sum(1.0 / ring.resistance for ring in self.rings.values())
@@ -88,12 +93,23 @@ class Warming:
         known = all(ring.time_constant is not None for ring in self.rings.values())
         stored = sum((ring.time_constant or 0.0) / ring.resistance for ring in self.rings.values())
         self.capacity = stored if known and stored > 0.0 else None
-        if speed is not None:
-            scene = replace(scene, shaft=replace(scene.shaft, speed=speed))
+        self._begin(scene)
+
+    def under(self, scene) -> "Warming":
+        """The same rings and closing force law at the conditions of another scene: speed, pressures, temperature."""
+        other = copy(self)
+        for found in ("cold_state", "scanned", "states"):
+            vars(other).pop(found, None)
+        other._begin(scene)
+        return other
+
+    def _begin(self, scene):
         self.scene = scene
         film, liquid = scene.film, liquid_of(scene.film)
         self.pressures = initially(film.inner_pressure), initially(film.outer_pressure)
-        self.closing = self.law.at(*self.pressures, initially(self.law.spring))
+        given = scene.closing.spring_force
+        self.spring = initially(self.law.spring if given is None else given)
+        self.closing = self.law.at(*self.pressures, self.spring)
         self.sealed = initially(film.temperature)
         self.highest = liquid.highest - self.sealed
 
@@ -102,7 +118,7 @@ class Warming:
         its closing force is the same."""
         film = in_numbers(replace(self.scene.film, heat=None), rise)
         film = replace(film, coning=_more(film.coning, self.coning_per_kelvin * rise), clearance=clearance)
-        closing = Closing(self.law.balance_ratio, self.law.spring) if clearance is not None else Closing()
+        closing = Closing(self.law.balance_ratio, self.spring) if clearance is not None else Closing()
         return replace(self.scene, film=film, closing=closing)
 
     def excess(self, rise: float):
@@ -136,13 +152,26 @@ class Warming:
         film, interface = scene.film, Interface(scene, FINE)
         s, _ = rest_state(scene, clearance)
         flow_at_rest(interface, s)
+        opening = float(s[FORCE] + (s[CONTACT_FORCE] if interface.contact is not None else 0.0))
         leakage = s[FLOW_INNER] * math.copysign(1.0, self.pressures[0] - self.pressures[1])
         rubbed, sheared = (float(abs(s[k] * s[SPIN_DIFFERENCE])) for k in (CONTACT_TORQUE, TORQUE))
         spent = float(abs(leakage * (self.pressures[1] - self.pressures[0])))
         return WarmState(
             rise, clearance, initially(coned(scene).coning), initially(film.viscosity), sheared + rubbed + spent,
             rubbed, spent, float(leakage), film.density * film.specific_heat * abs(float(leakage)),
+            float(abs(s[TORQUE] + s[CONTACT_TORQUE])), opening - self.closing,
         )  # fmt: skip
+
+    def damping(self, rise: float, clearance: float) -> float:
+        """Axial damping (N s/m) of the film at a rise (K) and a clearance (m)."""
+        scene, forces = self.at(rise, clearance), []
+        interface = Interface(scene, FINE)
+        for rate in (-clearance, clearance):
+            s, _ = rest_state(scene, clearance)
+            s[DZ_RATE] = rate
+            interface.film_wrench(interface.f, s)
+            forces.append(s[FORCE])
+        return float(forces[0] - forces[1]) / (2.0 * clearance)
 
     def surplus(self, state: WarmState) -> float:
         """Heat (W) that is made and not carried away in a state."""
@@ -188,7 +217,7 @@ class Warming:
             low, high = scanned[k], scanned[k + 1]
             if surplus[k] * surplus[k + 1] <= 0.0 and surplus[k] != surplus[k + 1]:
                 found.append(self._balanced(low, high))
-            elif 0 < k and surplus[k] and self._may_dip(surplus, k):
+            elif k > 0 and surplus[k] and self._may_dip(surplus, k):
                 found += self._dip(scanned[k - 1], low, high)
         return [self._judged(state) for state in found]
 
@@ -204,8 +233,8 @@ class Warming:
 
         sign = math.copysign(1.0, self.surplus(here))
         least = minimize_scalar(
-            lambda rise: sign * self._surplus_at(rise, here.clearance), bounds=(before.rise, after.rise), method="bounded",
-            options={"xatol": 1e-6 * after.rise},
+            lambda rise: sign * self._surplus_at(rise, here.clearance), bounds=(before.rise, after.rise),
+            method="bounded", options={"xatol": 1e-6 * after.rise},
         )  # fmt: skip
         if not least.fun < 0.0:
             return []
@@ -234,7 +263,7 @@ class Warming:
         """Least damped eigenvalue (1/s) of clearance and rise about a state; None without time constants."""
         if self.capacity is None:
             return None
-        damping = Interface(self.at(state.rise, state.clearance), FINE).linearised()[1][0, 0]
+        damping = self.damping(state.rise, state.clearance)
         gaps = STEP * state.clearance * np.array([-2.0, -1.0, 1.0, 2.0])
         rises = STEP * max(state.rise, 1e-3) * np.array([-2.0, -1.0, 1.0, 2.0])
 
@@ -242,7 +271,7 @@ class Warming:
             by_gap = _slope([value(state.rise, state.clearance + d) for d in gaps], gaps)
             return by_gap, _slope([value(state.rise + d, state.clearance) for d in rises], rises)
 
-        squeezed = slopes(lambda rise, gap: self.excess(rise)(gap) / damping)
+        squeezed = slopes(lambda rise, gap: self.state(rise, gap).excess / damping)
         heated = slopes(lambda rise, gap: self.surplus(self.state(rise, gap)) / self.capacity)
         values = np.linalg.eigvals(np.array([squeezed, heated]))
         return complex(values[np.argmax(values.real)])
@@ -323,13 +352,13 @@ def _numbers(scene, name: str, ring) -> RingHeat:
 
 
 @lru_cache(maxsize=64)
-def _warming(asked, speed) -> Warming:
-    return Warming(asked.scene, speed)
+def _warming(asked) -> Warming:
+    return Warming(asked.scene)
 
 
-def warming(scene, speed: float | None = None) -> Warming:
-    """The `Warming` of a scene with `[film.heat]`, at its own or another shaft speed (rad/s)."""
-    return _warming(Asked(scene), speed)
+def warming(scene) -> Warming:
+    """The `Warming` of a scene with `[film.heat]`, remembered."""
+    return _warming(Asked(scene))
 
 
 class NoWarmState(SceneError):
@@ -339,12 +368,14 @@ class NoWarmState(SceneError):
 
 
 def at_work(scene, speed: float | None = None, near: WarmState | None = None):
-    """The scene as it works: the numbers of its liquid in place of the liquid, faces coned by the heat that is made at a
-    shaft speed (rad/s; its own), clearance and closing force of that; and its WarmState, None without `[film.heat]`,
+    """The scene as it works: the numbers of its liquid in place of the liquid, faces coned by the heat that is made at
+    a shaft speed (rad/s; its own), clearance and closing force of that; and its WarmState, None without `[film.heat]`,
     looked for beside one `near` first.  Raises NoWarmState."""
     if scene.film.heat is None:
         return (scene if scene.film.liquid is None else _unheated(scene)), None
-    found = warming(scene) if speed is None else Warming(scene, speed)
+    found = warming(scene)
+    if speed is not None:
+        found = found.under(replace(scene, shaft=replace(scene.shaft, speed=speed)))
     state = found.working(near)
     if state is None and near is not None:
         raise NoWarmState("shaft.speed", f"no warm state at {speed:.6g} rad/s", "a speed whose heat is carried away")

@@ -218,13 +218,16 @@ def _work(friction) -> Line:
 def _heat_lines(heat) -> Iterator[Line]:
     """The warm state: temperature and coning, and as details what the faces were before and where the heat goes."""
     coned, cold = heat["coning_by_heat"], heat["cold"]
-    yield Line("heat", [("faces", heat["face_temperature"] - ZERO_CELSIUS, "degC"), ("by heat", heat["rise"], "temperature"),
+    faces = heat["face_temperature"] - ZERO_CELSIUS
+    yield Line("heat", [("faces", faces, "degC"), ("by heat", heat["rise"], "temperature"),
                         ("coning", heat["coning"], "tilt"), ("of it by heat", coned, "tilt")])  # fmt: skip
     if cold["clearance"] is not None:
-        yield Line("", [("unheated: clearance", cold["clearance"], "clearance"), ("leakage", cold["leakage"], "leakage"),
-                        ("friction", cold["power"], "power")])  # fmt: skip
+        before = ("unheated: clearance", cold["clearance"], "clearance")
+        yield Line("", [before, ("leakage", cold["leakage"], "leakage"), ("friction", cold["power"], "power")])
     taken = [(f"to the {name}", share, "share") for name, share in heat["shares"].items()]
-    yield Line("", [*taken, ("viscosity", heat["viscosity"], "viscosity"), ("loop gain", heat["loop_gain"], "1")], detail=True)
+    yield Line(
+        "", [*taken, ("viscosity", heat["viscosity"], "viscosity"), ("loop gain", heat["loop_gain"], "1")], detail=True
+    )
 
 
 def _contact_lines(contact, end: float) -> Iterator[Line]:

@@ -93,7 +93,7 @@ def gas_of(film) -> Gas | None:
 
 
 def viscosity_of(film):
-    """Viscosity (Pa s, number or function of time) of a `Film` table: its own, or that of its gas at the temperature."""
+    """Viscosity (Pa s, number or function of time) of a `Film` table: its own, or its gas's at the temperature."""
     if film.viscosity is not None or film.gas is None:
         return film.viscosity
     return over_temperature(film.temperature, gas_of(film).viscosity)

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -27,7 +28,7 @@ class ViscosityPoints:
         if not FEWEST <= len(value) <= MOST:
             raise QuantityError(f"{len(value)} points", f"{FEWEST} to {MOST} points, {self.expected()}")
         found = tuple(map(self._point, value))
-        for before, after in zip(found, found[1:], strict=False):
+        for before, after in pairwise(found):
             if not before[0] < after[0]:
                 raise QuantityError(f"{after[0]:g} K after {before[0]:g} K", "temperatures that increase")
         if len({unit for *_, unit in found}) > 1:
@@ -72,8 +73,8 @@ class Liquid:
     """The `[film.liquid]` table: a liquid whose viscosity follows its temperature, between the first and the last of
     the temperatures of its viscosities.
 
-    **Source** Walther (1931) for the viscosity: log10 log10(nu + 0.7) falls linearly with log10 T, nu in mm^2/s, between
-    neighbouring points (ASTM D341 for two).
+    **Source** Walther (1931) for the viscosity: log10 log10(nu + 0.7) falls linearly with log10 T, nu in mm^2/s,
+    between neighbouring points (ASTM D341 for two).
     **Valid** mineral oils and liquids alike; density, specific heat and conductivity are the same at all temperatures.
     """
 

@@ -1,4 +1,4 @@
-"""What heat does to a seal, in numbers: the warm state of a scene as `run --json`, `check` and `equilibrium` have it."""
+"""What heat does to a seal, in numbers: the warm state of a scene as `run`, `check` and `equilibrium` have it."""
 
 import math
 
@@ -17,11 +17,11 @@ CARRIES, THICK_FILM = 1.0 / 3.0, 1.0
 RADII = 2001
 
 
-def heat_of(scene, state: WarmState | None, speed: float | None = None) -> dict | None:
+def heat_of(scene, state: WarmState | None) -> dict | None:
     """The numbers of a warm state of a scene with `[film.heat]`, SI; None without a state."""
     if state is None:
         return None
-    found = warming(scene, speed)
+    found = warming(scene)
     total, cold = state.power, found.cold_state
     return {
         "rise": state.rise,

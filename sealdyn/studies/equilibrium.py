@@ -321,7 +321,10 @@ def _notes(numbers, scene) -> list[str]:
         notes.append(f"The film carries {least} to {most} there.")
     if any(not root["stable"] for root in roots):
         notes.append("From an unstable clearance the faces close, or open to a stable one.")
-    if any(not root["stable"] and "heat" not in root and root["stiffness"] + numbers["support_stiffness"] > 0 for root in roots):
+    if any(
+        not root["stable"] and "heat" not in root and root["stiffness"] + numbers["support_stiffness"] > 0
+        for root in roots
+    ):
         notes.append("The support's stiffness would hold an unstable one.")
     if sum(root["stable"] for root in roots) > 1:
         notes.append("Several stable clearances: the start of a run decides which one the seal takes.")

@@ -1,0 +1,193 @@
+"""Warm-up: temperature, coning, clearance, leakage and friction of the aligned seal over start, hold and stop.
+
+    C rise' = H - (G + density specific_heat Q) rise,     D clearance' = opening force - closing force
+
+as dynamics/warm_state.py has them, by an implicit method of high order (Radau IIA, fifth order, of SciPy).
+**Valid** aligned faces without inertia: speeds, pressures and temperatures that change slower than the rings move.
+"""
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from ..answers import Answer, Axis, Panel, Series, Table
+from ..dynamics.warm_state import warming
+from ..numerics.piecewise_linear import PiecewiseLinear
+from ..quantities import in_words
+from ..scenario.errors import ScenarioError
+from ..scene.variants import frozen_at
+from ..units import Time
+from . import Info
+
+INFO = Info(
+    timed=("warm_pump", 3),
+    asks="How does the seal warm up?",
+    wavy=True,
+    aligned=True,
+    units={
+        "time": "s", "rise": "K", "coning": "rad", "clearance": "m", "power": "W", "contact_power": "W",
+        "leakage": "m^3/s", "torque": "N m", "speed": "rad/s", "energy_residual": "1",
+        "heat": "J", "collapsed": "s",
+    },
+    along=dict.fromkeys(
+        ("rise", "coning", "clearance", "power", "contact_power", "leakage", "torque", "speed"), ("time",)
+    ),
+)  # fmt: skip
+# Relative accuracy of the integration, and absolute of the rise (K).
+ACCURACY, RESOLVED = 1e-6, 1e-7
+# Share of the clearance at the start at which the film counts as closed.
+CLOSED = 1e-4
+# Share of the highest rise that may be missing where the faces count as warm.
+NEARLY = 0.05
+# Of what is given by table: everything that the film or its load hangs on.
+TABLES = ("outer_pressure", "inner_pressure", "temperature")
+
+
+@dataclass(frozen=True)
+class Settings:
+    """The course of the speed, where `shaft.speed` is no table: start, hold and stop."""
+
+    start: Time = 1.0
+    """From rest to the speed of the scenario."""
+    hold: Time = 60.0
+    """At that speed."""
+    stop: Time = 0.0
+    """To rest again; without it the seal runs on."""
+    rest: Time = 0.0
+    """At rest after that."""
+    begin: str = "cold"
+    """"cold": faces of the sealed liquid's temperature; "warm": the warm state of the first speed."""
+
+
+def run(scenario, settings, tools) -> Answer:
+    """The course of the warm-up, the rise and the clearance as unknowns."""
+    scene = scenario.scene
+    if scene.film.heat is None:
+        found = "nothing: a seal that takes no heat does not warm up"
+        raise ScenarioError(scenario.name, "film.heat", found, "stator or rotor, each { resistance, ... }")
+    if settings.begin not in ("cold", "warm"):
+        raise ScenarioError(scenario.name, "study.warm_up.begin", repr(settings.begin), '"cold" or "warm"')
+    scene, times = _course(scene, settings, scenario.name)
+    found = warming(frozen_at(scene, 0.0))
+    if found.capacity is None:
+        bare = next(name for name, ring in found.rings.items() if ring.time_constant is None)
+        raise ScenarioError(scenario.name, f"film.heat.{bare}.time_constant", "nothing", "a time, to warm up in")
+    numbers = _march(scene, found, times, settings.begin, scenario.name, tools)
+    return Answer(numbers, _found(numbers), [_table(numbers)], _panels(numbers))
+
+
+def _course(scene, settings, name):
+    """The scene with its speed over time, and the times (s) between which everything is linear."""
+    if not isinstance(scene.shaft.speed, PiecewiseLinear):
+        parts = [settings.start, settings.hold, settings.stop, settings.rest if settings.stop else 0.0]
+        if min(parts) < 0.0 or sum(parts) <= 0.0:
+            raise ScenarioError(name, "study.warm_up.hold", f"{sum(parts):g} s in all", "times >= 0, not all of them 0")
+        ends, speed = np.cumsum(parts), scene.shaft.speed
+        begin = 0.0 if settings.start else speed
+        course = [(0.0, begin), (ends[0], speed), (ends[1], speed)]
+        course += [(ends[2], 0.0), (ends[3], 0.0)] if settings.stop else []
+        course = [point for k, point in enumerate(course) if k == 0 or point[0] > course[k - 1][0]]
+        table = PiecewiseLinear(tuple(t for t, _ in course), tuple(w for _, w in course))
+        scene = replace(scene, shaft=replace(scene.shaft, speed=table))
+    film, closing = scene.film, scene.closing
+    tables = [scene.shaft.speed, *(getattr(film, key) for key in TABLES), film.coning, closing.spring_force]
+    breaks = {t for table in tables if isinstance(table, PiecewiseLinear) for t in table.time if t >= 0.0}
+    return scene, sorted(breaks | {0.0})
+
+
+def _march(scene, found, times, begin, name, tools) -> dict:
+    """The warm-up from break to break."""
+    from scipy.integrate import solve_ivp
+
+    state = found.cold_state if begin == "cold" else found.working()
+    if state is None:
+        raise ScenarioError(name, "film", "no film at the start", 'a film that holds, or begin = "warm"')
+    unit, duration, kept = state.clearance, times[-1], []
+    y, collapsed = np.array([1.0, state.rise, 0.0, 0.0]), None
+
+    def under(t):
+        return found.under(frozen_at(scene, t))
+
+    def rates(t, y):
+        here = under(min(max(float(t), inside[0]), inside[1]))
+        clearance, rise = max(float(y[0]), CLOSED) * unit, float(y[1])
+        now = here.state(rise, clearance)
+        left = (here.conductance + now.carried) * rise
+        squeezed = now.excess / (here.damping(rise, clearance) * unit)
+        return [squeezed, (now.power - left) / here.capacity, now.power, left]
+
+    def closed(t, y):
+        return y[0] - CLOSED
+
+    closed.terminal = True
+    for first, last in pairwise(times):
+        # At a step of a table the value is that of the piece.
+        inside = np.nextafter(first, last), np.nextafter(last, first)
+        scale = [ACCURACY, RESOLVED, RESOLVED, RESOLVED]
+        part = solve_ivp(rates, (first, last), y, "Radau", rtol=ACCURACY, atol=scale, events=closed)
+        kept += [(t, column) for t, column in zip(part.t, part.y.T, strict=True)][1 if kept else 0 :]
+        y = part.y[:, -1]
+        tools.say(last / duration)
+        if part.status != 0:
+            collapsed = float(part.t[-1])
+            break
+    rows = [(t, under(float(t)).state(float(c[1]), float(max(c[0], CLOSED)) * unit)) for t, c in kept]
+    stored = found.capacity * (y[1] - state.rise)
+    return {
+        "time": [float(t) for t, _ in rows],
+        **{key: [getattr(s, key) for _, s in rows]
+           for key in ("rise", "coning", "clearance", "power", "contact_power", "leakage", "torque")},
+        "speed": [float(scene.shaft.speed.at(float(t))) for t, _ in rows],
+        "heat": float(y[2]),
+        "energy_residual": float(abs(y[2] - y[3] - stored) / y[2]) if y[2] > 0.0 else 0.0,
+        "collapsed": collapsed,
+    }  # fmt: skip
+
+
+def _found(numbers) -> str:
+    """How warm, how far open, and when."""
+    if numbers["collapsed"] is not None:
+        return f"The film collapses by heat after {in_words('time', numbers['collapsed'])}."
+    hot = int(np.argmax(numbers["rise"]))
+    words = f"The faces get {in_words('temperature', numbers['rise'][hot])} warmer than the sealed liquid"
+    first = next(k for k, rise in enumerate(numbers["rise"]) if rise >= (1.0 - NEARLY) * numbers["rise"][hot])
+    when = f"{100 * (1 - NEARLY):.0f} % of it after {in_words('time', numbers['time'][first])}"
+    begin, then = (in_words("clearance", numbers["clearance"][k]) for k in (0, hot))
+    return f"{words}, {when}; the clearance goes from {begin} to {then}."
+
+
+def _table(numbers) -> Table:
+    """A dozen moments between the first and the last."""
+    keys = (("time", "time"), ("speed", "speed"), ("temperature", "rise"), ("tilt", "coning"),
+            ("clearance", "clearance"), ("power", "power"), ("torque", "torque"), ("leakage", "leakage"))  # fmt: skip
+    rise = np.array(numbers["rise"])
+    # Moments at which as much has happened as from any to the next.
+    way = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(rise)) + 1e-3 * np.ptp(rise) / len(rise))])
+    at = np.unique(np.searchsorted(way, np.linspace(0.0, way[-1], 12)))
+    rows = [[numbers[key][min(k, len(rise) - 1)] for _, key in keys] for k in at]
+    return Table("course", [(held, {"power": "heat"}.get(key, key)) for held, key in keys], rows)
+
+
+def _panels(numbers) -> list[Panel]:
+    """Temperature and coning, clearance and leakage, heat and torque over time; the speed below."""
+    over = Axis("time")
+
+    def panel(title, key, held, style, **more):
+        lines = [Series("line", numbers["time"], numbers[key], style=style)]
+        return Panel(title, over, Axis(held, **more), lines)
+
+    heat = [Series("line", numbers["time"], numbers["power"], label="all", style="film thick")]
+    if any(numbers["contact_power"]):
+        rubbed = Series(
+            "line", numbers["time"], numbers["contact_power"], label="of asperities", style="contact dotted"
+        )
+        heat.append(rubbed)
+    return [
+        panel("Rise of the faces", "rise", "temperature", "bad", low=0.0),
+        panel("Coning", "coning", "tilt", "tilt"),
+        panel("Clearance", "clearance", "clearance", "film", low=0.0),
+        replace(panel("Leakage", "leakage", "leakage", "blue"), first=True),
+        Panel("Heat", over, Axis("power", "heat", low=0.0), heat),
+        panel("Shaft speed", "speed", "speed", "black"),
+    ]
