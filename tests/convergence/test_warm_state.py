@@ -25,7 +25,7 @@ from warm_seals import (
 import sealdyn
 from sealdyn import Scenario
 from sealdyn.dynamics.interface import Interface
-from sealdyn.dynamics.warm_state import Warming, warming
+from sealdyn.dynamics.warm_state import warming
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 # A liquid that never thins, and whose leakage carries no heat.
@@ -69,17 +69,20 @@ def test_film_coefficients_are_those_of_the_warm_film():
 @pytest.mark.parametrize(
     ("liquid", "fold"), zip(({"film.liquid": None}, {}), FOLDS, strict=True), ids=["dead", "water"]
 )
-def test_the_fold_of_a_seal_pressurised_inside(liquid, fold):
+def test_the_fold_of_a_seal_pressurised_inside(thins, fold):
     """The speed from which heat has no balance: by counting the states."""
-    changes = INSIDE if not liquid else INSIDE | {"film.liquid": _unthinned()}
-    scene = scene_of(changes)
+    changes = INSIDE if thins else INSIDE | {"film.liquid": _unthinned()}
+
+    def at(rpm):
+        return warming(scene_of(changes, shaft__speed=rpm * RPM))
+
     low, high = 0.8 * fold, 1.25 * fold
-    assert len(Warming(scene, low * RPM).states) == 2 and not Warming(scene, high * RPM).states
+    assert len(at(low).states) == 2 and not at(high).states
     while high - low > 1e-3 * fold:
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if Warming(scene, middle * RPM).states else (low, middle)
+        low, high = (middle, high) if at(middle).states else (low, middle)
     assert 0.5 * (low + high) == pytest.approx(fold, rel=0.01)
-    assert Warming(scene, high * RPM).working() is None
+    assert at(high).working() is None
 
 
 def _unthinned():
@@ -98,8 +101,7 @@ def test_a_smooth_film_that_does_not_thin_obeys_the_quadratic(s, ratios):
     found = warming(scene_of(changes))
     one = found.coning_per_kelvin / found.conductance * (cold.power - cold.flow_power) / cold.coning
     assert one * s > 0.0
-    turned = Warming(scene_of(changes), math.sqrt(s / one) * found.scene.shaft.speed)
-    states = turned.states
+    states = warming(scene_of(changes, shaft__speed=math.sqrt(s / one) * found.scene.shaft.speed)).states
     assert [state.coning / cold.coning for state in states] == pytest.approx(ratios, rel=1e-4)
     assert [state.clearance / cold.clearance for state in states] == pytest.approx(ratios, rel=1e-4)
 
