@@ -160,7 +160,7 @@ class Warming:
     def state(self, rise: float, clearance: float) -> WarmState:
         """Heat made and carried at a rise (K) and a clearance (m), whether or not they balance."""
         scene = self.at(rise, clearance)
-        film, interface = scene.film, Interface(scene, FINE)
+        film, interface = scene.film, Interface(_whole(scene), FINE)
         s, _ = rest_state(scene, clearance)
         flow_at_rest(interface, s)
         opening = float(s[FORCE] + (s[CONTACT_FORCE] if interface.contact is not None else 0.0))
@@ -350,6 +350,12 @@ def _more(quantity, change: float):
 def _unheated(scene):
     """The scene with faces that take no heat and the numbers of its liquid."""
     return replace(scene, film=in_numbers(replace(scene.film, heat=None)))
+
+
+def _whole(scene):
+    """The scene with the film whose coefficients a linear one borrows: that one's leakage and friction are observed."""
+    borrows = scene.film.model == "linear" and scene.film.coefficients == "radial"
+    return replace(scene, film=replace(scene.film, model="radial")) if borrows else scene
 
 
 def _closing(cold) -> tuple[ClosingForce, str]:
