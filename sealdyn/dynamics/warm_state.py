@@ -165,7 +165,8 @@ class Warming:
         flow_at_rest(interface, s)
         opening = float(s[FORCE] + (s[CONTACT_FORCE] if interface.contact is not None else 0.0))
         leakage = s[FLOW_INNER] * math.copysign(1.0, self.pressures[0] - self.pressures[1])
-        rubbed, sheared = (float(abs(s[k] * s[SPIN_DIFFERENCE])) for k in (CONTACT_TORQUE, TORQUE))
+        speed = self.scene.film.heat.friction * s[SPIN_DIFFERENCE]
+        rubbed, sheared = (float(abs(s[k] * speed)) for k in (CONTACT_TORQUE, TORQUE))
         spent = float(abs(leakage * (self.pressures[1] - self.pressures[0])))
         return WarmState(
             rise, clearance, initially(coned(scene).coning), initially(film.viscosity), sheared + rubbed + spent,

@@ -5,6 +5,7 @@ that enters it.
 **Valid** numbers of one ring at a time, its other surfaces at the temperature of the sealed liquid.
 """
 
+import math
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
@@ -52,6 +53,8 @@ class Heat:
     """The ring that stands."""
     rotor: HeatedRing | None = None
     """The ring that turns."""
+    friction: float = 1.0
+    """Friction that heats over that of the aligned film: of rings that rub or run tilted, as a run tells it."""
 
     @property
     def rings(self) -> dict[str, HeatedRing]:
@@ -86,6 +89,8 @@ def heat_errors(scene) -> list[tuple[str, str, str]]:
         return [("film.heat", "heat of a film of gas", "a liquid: across a film of gas the faces differ")]
     if film.model == "linear" and not isinstance(film.coefficients, str):
         return [("film.heat", "heat beside coefficients of one's own", "a film whose friction is known")]
+    if not 0.0 < heat.friction < math.inf:
+        bad.append(("film.heat.friction", f"{heat.friction:g}", "a number above 0"))
     if not heat.rings:
         bad.append(("film.heat", "an empty table", "stator or rotor, each { resistance, coning_per_watt }"))
     if film.liquid is None:

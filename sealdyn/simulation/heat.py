@@ -15,6 +15,8 @@ HOTTEST = 1.55
 # Share of the heat that the leakage may carry; number (b mu U^2/k) from which the film is warmer than its walls.
 CARRIES, THICK_FILM = 1.0 / 3.0, 1.0
 RADII = 2001
+# Share by which the friction of a run may differ from that of the aligned film.
+ANOTHER = 0.05
 # Convection is known to a factor of two.
 COOLINGS = (0.5, 2.0)
 
@@ -86,8 +88,8 @@ def boiling_radius(found: Warming, state: WarmState, times: float = 1.0) -> floa
     return float(boils[-1] if outer >= inner else boils[0])
 
 
-def heat_cautions(scene, state: WarmState) -> list[Caution]:
-    """Where the warm state leaves what it is valid for."""
+def heat_cautions(scene, state: WarmState, friction: float = math.nan) -> list[Caution]:
+    """Where the warm state leaves what it is valid for, and where the mean `friction` (W) of a run is another."""
     found, words = warming(scene), []
     liquid, film = liquid_of(scene.film), scene.film
     if (radius := boiling_radius(found, state)) is not None:
@@ -101,6 +103,10 @@ def heat_cautions(scene, state: WarmState) -> list[Caution]:
     ):
         names = [name for name, ring in found.rings.items() if getattr(ring, holds)]
         words += [f"{said} ({' and '.join(names)})"] if names else []
+    expected = state.power - state.flow_power
+    if expected > 0.0 and abs(friction / expected - 1.0) > ANOTHER:
+        factor = film.heat.friction * friction / expected
+        words.append(f"the run makes {friction:.4g} W, {expected:.4g} W are counted: film.heat.friction = {factor:.4g}")
     share = state.carried * state.rise / state.power if state.power else 0.0
     if share > CARRIES:
         words.append(f"leakage carries {100 * share:.3g} % of the heat: the rise is at most half as high as told")

@@ -194,7 +194,9 @@ def _cautions(scenario, run, outcome, tally) -> list[Caution]:
     if model.heat is not None:
         from .heat import heat_cautions
 
-        warm = heat_cautions(model.given, model.heat)
+        constant = not isinstance(model.given.shaft.speed, PiecewiseLinear)
+        friction = tally.mean("friction_power") if constant else math.nan
+        warm = heat_cautions(model.given, model.heat, friction)
     return [*run.cautions, *energy, *_blown_open(model, tally), *found, *warm]
 
 
