@@ -31,8 +31,8 @@ from ..scene.liquid import in_numbers, liquid_of
 from ..scene.scene import Closing, SceneError
 from ..status import Status
 from .equilibrium import ClosingForce, crossing, equilibria, settle
+from .heated_rings import heated_body
 from .interface import Asked, Interface, flow_at_rest, opening_law, rest_state
-from .intervals import largest_value
 
 # Rises that are looked at between the first, as a share of the last, and the end of the liquid's table.
 SCANNED, FIRST = 60, 1e-4
@@ -49,32 +49,14 @@ STRIDE, REACH = 1.03, 60
 
 
 @dataclass(frozen=True)
-class HeatedBody:
-    """A ring's `resistance` (K/W), `coning_per_watt` (rad/W) and `time_constant` (s, None where it is not known); of
-    one from its drawing also its `convection` (W/(m^2 K)), the Reynolds number of that by its speed and whether it is
-    `extrapolated`, its hottest place and the O-ring's over the face's mean rise, h w/k, and length over width."""
-
-    resistance: float
-    coning_per_watt: float
-    time_constant: float | None
-    convection: float | None = None
-    reynolds: float | None = None
-    extrapolated: bool = False
-    hottest: float | None = None
-    at_o_ring: float | None = None
-    biot: float | None = None
-    narrow: bool = False
-    long: bool = False
-
-
-@dataclass(frozen=True)
 class WarmState:
     """A state in which heat balances: `rise` (K) of the faces over the sealed liquid, `clearance` (m) and `coning`
     (rad) then, `viscosity` (Pa s), heat made `power` (W), of it the asperities' `contact_power` and what the leakage
     spends `flow_power`, `carried` (W/K) by the leakage, `loop_gain` dH/d(rise) over (G + carried), `slow` the least
     damped
     eigenvalue (1/s, complex; None without time constants), and whether it is `stable`; `torque` (N m) of film and
-    asperities, `excess` (N) of the opening force over the closing force, which is 0 at its clearance."""
+    asperities, `excess` (N) of the opening force over the closing force, which is 0 at its clearance; `coned_by`:
+    coning by heat (rad)."""
 
     rise: float
     clearance: float
@@ -87,6 +69,7 @@ class WarmState:
     carried: float
     torque: float
     excess: float
+    coned_by: float
     loop_gain: float = math.nan
     slow: complex | None = None
     stable: bool = True
@@ -124,11 +107,12 @@ class Warming:
         self.sealed = initially(film.temperature)
         self.highest = liquid.highest - self.sealed
 
-    def at(self, rise: float, clearance: float | None = None):
+    def at(self, rise: float, clearance: float | None = None, coned_by: float | None = None):
         """The scene, without heat, with faces and liquid `rise` (K) above the sealed one, and a clearance (m) if given;
-        its closing force is the same."""
+        its closing force is the same.  `coned_by`: coning by heat (rad), where it is not that of the steady rings."""
         film = in_numbers(replace(self.scene.film, heat=None), rise)
-        film = replace(film, coning=_more(film.coning, self.coning_per_kelvin * rise), clearance=clearance)
+        change = self.coning_per_kelvin * rise if coned_by is None else coned_by
+        film = replace(film, coning=_more(film.coning, change), clearance=clearance)
         closing = Closing(self.law.balance_ratio, self.spring) if clearance is not None else Closing()
         return replace(self.scene, film=film, closing=closing)
 
@@ -157,9 +141,10 @@ class Warming:
         stable = [root.clearance for root in roots if root.stable]
         return stable[-1] if stable else None
 
-    def state(self, rise: float, clearance: float) -> WarmState:
-        """Heat made and carried at a rise (K) and a clearance (m), whether or not they balance."""
-        scene = self.at(rise, clearance)
+    def state(self, rise: float, clearance: float, coned_by: float | None = None) -> WarmState:
+        """Heat made and carried at a rise (K) and a clearance (m), whether or not they balance; `coned_by` as in
+        `at`."""
+        scene = self.at(rise, clearance, coned_by)
         film, interface = scene.film, Interface(_whole(scene), FINE)
         s, _ = rest_state(scene, clearance)
         flow_at_rest(interface, s)
@@ -172,11 +157,12 @@ class Warming:
             rise, clearance, initially(coned(scene).coning), initially(film.viscosity), sheared + rubbed + spent,
             rubbed, spent, float(leakage), film.density * film.specific_heat * abs(float(leakage)),
             float(abs(s[TORQUE] + s[CONTACT_TORQUE])), opening - self.closing,
+            self.coning_per_kelvin * rise if coned_by is None else coned_by,
         )  # fmt: skip
 
-    def damping(self, rise: float, clearance: float) -> float:
-        """Axial damping (N s/m) of the film at a rise (K) and a clearance (m)."""
-        scene, forces = self.at(rise, clearance), []
+    def damping(self, rise: float, clearance: float, coned_by: float | None = None) -> float:
+        """Axial damping (N s/m) of the film at a rise (K) and a clearance (m); `coned_by` as in `at`."""
+        scene, forces = self.at(rise, clearance, coned_by), []
         interface = Interface(scene, FINE)
         for rate in (-clearance, clearance):
             s, _ = rest_state(scene, clearance)
@@ -370,41 +356,6 @@ def _closing(cold) -> tuple[ClosingForce, str]:
     outer = initially(film.outer_pressure) >= initially(film.inner_pressure)
     law = ClosingForce(area, closing.balance_ratio, closing.spring_force, outer)
     return law, "closing force from balance ratio and spring"
-
-
-def heated_body(scene, name: str, cooling: float = 1.0) -> HeatedBody:
-    """What the ring called `name` takes of the heat, as given or from its body; its convection times `cooling`."""
-    ring = getattr(scene.film.heat, name)
-    if ring.convection is None:
-        return HeatedBody(ring.resistance, ring.coning_per_watt, ring.time_constant)
-    from ..closed_form.ring_fin import ring_cooling
-    from ..faces.ring_coning import RingBody
-    from ..faces.ring_heat import ring_heat
-
-    film, body, liquid, cooled = scene.film, getattr(scene, name).body, liquid_of(scene.film), None
-    sealed, convection = initially(film.temperature), ring.convection
-    outer_is_high = initially(film.outer_pressure) >= initially(film.inner_pressure)
-    wet = ring.wet or ("outer" if outer_is_high else "bore")
-    if convection == "becker":
-        speeds = {"rotor": largest_value(scene.shaft.speed), "stator": largest_value(scene.stator.speed)}
-        turns = speeds[name] != 0.0
-        fluid = [float(of(sealed)) for of in (liquid.density_at, liquid.viscosity_at, liquid.specific_heat_at,
-                                              liquid.conductivity_at)]  # fmt: skip
-        diameter = 2.0 * (body.inner_radius if wet == "bore" else body.outer_radius)
-        cooled = ring_cooling(speeds[name] if turns else max(speeds.values()), diameter, fluid, turns)
-        if not cooled.value > 0.0:
-            raise SceneError(f"film.heat.{name}.convection", '"becker" of a shaft at rest', "a shaft that turns")
-        convection = cooled.value
-    convection *= cooling
-    length = ring.wetted_length or body.length
-    drawn = RingBody(body.inner_radius, body.outer_radius, body.length, film.inner_radius, film.outer_radius,
-                     **body.solid(), convection=convection, wetted_length=length, wet=wet)  # fmt: skip
-    found = ring_heat(drawn)
-    return HeatedBody(
-        found.resistance, found.coning_per_watt, found.time_constant, convection,
-        cooled and cooled.reynolds, bool(cooled and cooled.extrapolated), found.hottest, found.at_o_ring, found.biot,
-        film.outer_radius - film.inner_radius < drawn.width / 3.0, body.length > 4.0 * drawn.width,
-    )  # fmt: skip
 
 
 @lru_cache(maxsize=64)

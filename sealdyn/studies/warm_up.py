@@ -1,17 +1,15 @@
 """Warm-up: temperature, coning, clearance, leakage and friction of the aligned seal over start, hold and stop.
 
-    C rise' = H - (G + density specific_heat Q) rise,     D clearance' = opening force - closing force
-
-as dynamics/warm_state.py has them, by an implicit method of high order (Radau IIA, fifth order, of SciPy).
+The equations are those of dynamics/warm_course.py.
 **Valid** aligned faces without inertia: speeds, pressures and temperatures that change slower than the rings move.
 """
 
 from dataclasses import dataclass, replace
-from itertools import pairwise
 
 import numpy as np
 
 from ..answers import Answer, Axis, Panel, Series, Table
+from ..dynamics.warm_course import breaks, course
 from ..dynamics.warm_state import warming
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..quantities import in_words
@@ -34,14 +32,10 @@ INFO = Info(
         ("rise", "coning", "clearance", "power", "contact_power", "leakage", "torque", "speed"), ("time",)
     ),
 )  # fmt: skip
-# Relative accuracy of the integration, and absolute of the rise (K).
-ACCURACY, RESOLVED = 1e-6, 1e-7
-# Share of the clearance at the start at which the film counts as closed.
-CLOSED = 1e-4
 # Share of the highest rise that may be missing where the faces count as warm.
 NEARLY = 0.05
-# Of what is given by table: everything that the film or its load hangs on.
-TABLES = ("outer_pressure", "inner_pressure", "temperature")
+# What is kept of every moment.
+COLUMNS = ("rise", "coning", "clearance", "power", "contact_power", "leakage", "torque")
 
 
 @dataclass(frozen=True)
@@ -69,11 +63,14 @@ def run(scenario, settings, tools) -> Answer:
     if settings.begin not in ("cold", "warm"):
         raise ScenarioError(scenario.name, "study.warm_up.begin", repr(settings.begin), '"cold" or "warm"')
     scene, times = _course(scene, settings, scenario.name)
-    found = warming(scene).under(frozen_at(scene, 0.0))
+    found = warming(scene).under(frozen_at(scene, times[0]))
     if found.capacity is None:
         bare = next(name for name, ring in found.rings.items() if ring.time_constant is None)
         raise ScenarioError(scenario.name, f"film.heat.{bare}.time_constant", "nothing", "a time, to warm up in")
-    numbers = _march(scene, found, times, settings.begin, scenario.name, tools)
+    start = found.cold_state if settings.begin == "cold" else found.working()
+    if start is None:
+        raise ScenarioError(scenario.name, "film", "no film at the start", 'a film that holds, or begin = "warm"')
+    numbers = _numbers(scene, course(scene, times, start, tools.say))
     return Answer(numbers, _found(numbers), [_table(numbers)], _panels(numbers))
 
 
@@ -90,59 +87,19 @@ def _course(scene, settings, name):
         course = [point for k, point in enumerate(course) if k == 0 or point[0] > course[k - 1][0]]
         table = PiecewiseLinear(tuple(t for t, _ in course), tuple(w for _, w in course))
         scene = replace(scene, shaft=replace(scene.shaft, speed=table))
-    film, closing = scene.film, scene.closing
-    tables = [scene.shaft.speed, *(getattr(film, key) for key in TABLES), film.coning, closing.spring_force]
-    breaks = {t for table in tables if isinstance(table, PiecewiseLinear) for t in table.time if t >= 0.0}
-    return scene, sorted(breaks | {0.0})
+    return scene, breaks(scene)
 
 
-def _march(scene, found, times, begin, name, tools) -> dict:
-    """The warm-up from break to break."""
-    from scipy.integrate import solve_ivp
-
-    state = found.cold_state if begin == "cold" else found.working()
-    if state is None:
-        raise ScenarioError(name, "film", "no film at the start", 'a film that holds, or begin = "warm"')
-    unit, duration, kept = state.clearance, times[-1], []
-    y, collapsed = np.array([1.0, state.rise, 0.0, 0.0]), None
-
-    def under(t):
-        return found.under(frozen_at(scene, t))
-
-    def rates(t, y):
-        here = under(min(max(float(t), inside[0]), inside[1]))
-        clearance, rise = max(float(y[0]), CLOSED) * unit, float(y[1])
-        now = here.state(rise, clearance)
-        left = (here.conductance + now.carried) * rise
-        squeezed = now.excess / (here.damping(rise, clearance) * unit)
-        return [squeezed, (now.power - left) / here.capacity, now.power, left]
-
-    def closed(t, y):
-        return y[0] - CLOSED
-
-    closed.terminal = True
-    for first, last in pairwise(times):
-        # At a step of a table the value is that of the piece.
-        inside = np.nextafter(first, last), np.nextafter(last, first)
-        scale = [ACCURACY, RESOLVED, RESOLVED, RESOLVED]
-        part = solve_ivp(rates, (first, last), y, "Radau", rtol=ACCURACY, atol=scale, events=closed)
-        kept += [(t, column) for t, column in zip(part.t, part.y.T, strict=True)][1 if kept else 0 :]
-        y = part.y[:, -1]
-        tools.say(last / duration)
-        if part.status != 0:
-            collapsed = float(part.t[-1])
-            break
-    rows = [(t, under(float(t)).state(float(c[1]), float(max(c[0], CLOSED)) * unit)) for t, c in kept]
-    stored = found.capacity * (y[1] - state.rise)
+def _numbers(scene, found) -> dict:
+    """The numbers of the answer of a Course."""
     return {
-        "time": [float(t) for t, _ in rows],
-        **{key: [getattr(s, key) for _, s in rows]
-           for key in ("rise", "coning", "clearance", "power", "contact_power", "leakage", "torque")},
-        "speed": [float(scene.shaft.speed.at(float(t))) for t, _ in rows],
-        "heat": float(y[2]),
-        "energy_residual": float(abs(y[2] - y[3] - stored) / y[2]) if y[2] > 0.0 else 0.0,
-        "collapsed": collapsed,
-    }  # fmt: skip
+        "time": found.time,
+        **{key: [getattr(state, key) for state in found.states] for key in COLUMNS},
+        "speed": [float(scene.shaft.speed.at(t)) for t in found.time],
+        "heat": found.heat,
+        "energy_residual": found.residual,
+        "collapsed": found.collapsed,
+    }
 
 
 def _found(numbers) -> str:
