@@ -174,7 +174,10 @@ class Model:
         return self._linear_scenes[key]
 
     def at_speed(self, speed: float) -> "Model":
-        """The same with the warm state of another shaft speed (rad/s).  Raises NoWarmState."""
+        """The same with the warm state of another shaft speed (rad/s); itself where nothing is warm.  Raises
+        NoWarmState."""
+        if self.heat is None:
+            return self
         if speed not in self._warm:
             beside = self._warm[min(self._warm, key=lambda w: abs(w - speed))].heat
             scene, heat = at_work(self.given, speed, beside)

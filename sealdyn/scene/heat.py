@@ -67,6 +67,8 @@ def heat_errors(scene) -> list[tuple[str, str, str]]:
         return [("film.heat", "heat of a film of gas", "a liquid: across a film of gas the faces differ")]
     if film.model == "linear" and not isinstance(film.coefficients, str):
         return [("film.heat", "heat beside coefficients of one's own", "a film whose friction is known")]
+    if scene.stator.elastic is not None:
+        return [("film.heat", "heat beside an elastic ring", "one of them: its waves are those of one viscosity")]
     if not heat.rings:
         bad.append(("film.heat", "an empty table", "stator or rotor, each { resistance, coning_per_watt }"))
     if film.liquid is None:
