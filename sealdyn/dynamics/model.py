@@ -178,7 +178,10 @@ class Model:
         return self._linear_scenes[key]
 
     def at_speed(self, speed: float) -> "Model":
-        """The same with the warm state of another shaft speed (rad/s).  Raises NoWarmState."""
+        """The same with the warm state of another shaft speed (rad/s); itself where nothing is warm.  Raises
+        NoWarmState."""
+        if self.heat is None:
+            return self
         from .warm_state import at_work
 
         if speed not in self._warm:

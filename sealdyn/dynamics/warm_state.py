@@ -102,8 +102,8 @@ class Warming:
         film, liquid = scene.film, liquid_of(scene.film)
         self.pressures = initially(film.inner_pressure), initially(film.outer_pressure)
         given = scene.closing.spring_force
-        self.spring = initially(self.law.spring if given is None else given)
-        self.closing = self.law.at(*self.pressures, self.spring)
+        self.spring = self.law.spring if given is None else given
+        self.closing = self.law.at(*self.pressures, initially(self.spring))
         self.sealed = initially(film.temperature)
         self.highest = liquid.highest - self.sealed
 

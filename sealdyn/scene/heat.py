@@ -89,6 +89,8 @@ def heat_errors(scene) -> list[tuple[str, str, str]]:
         return [("film.heat", "heat of a film of gas", "a liquid: across a film of gas the faces differ")]
     if film.model == "linear" and not isinstance(film.coefficients, str):
         return [("film.heat", "heat beside coefficients of one's own", "a film whose friction is known")]
+    if scene.stator.elastic is not None:
+        return [("film.heat", "heat beside an elastic ring", "one of them: its waves are those of one viscosity")]
     if not 0.0 < heat.friction < math.inf:
         bad.append(("film.heat.friction", f"{heat.friction:g}", "a number above 0"))
     if not heat.rings:
@@ -98,8 +100,6 @@ def heat_errors(scene) -> list[tuple[str, str, str]]:
         bad.append(("film.liquid", found, '"water", or a table: viscosity over temperature'))
     for name, ring in heat.rings.items():
         key = f"film.heat.{name}"
-        if scene.stator.elastic is not None:
-            bad.append((key, "heat beside stator.elastic", "one of them: waves that heat moves are not reckoned"))
         numbers = [k for k in BY_NUMBERS if getattr(ring, k) not in (None, 0.0)]
         drawn = [k for k in BY_BODY if getattr(ring, k) is not None]
         if numbers and drawn:
