@@ -170,7 +170,7 @@ def run(
                 scenario, out, progress=bar, stop=lambda: bool(interruption.asked), resume=resume, allow_large=yes
             )
         except (SceneError, ArchiveError) as error:
-            raise Stop(Status.INVALID, f"{file}: {error}") from None
+            raise Stop(error.status, f"{file}: {error}") from None
         except OSError as error:
             raise not_written(error, out, left["words"]()) from None
     summary = {**result.summary, "figure": None}
@@ -239,7 +239,7 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
         try:
             found = checked(scenario)
         except (SceneError, ArchiveError) as error:
-            raise Stop(Status.INVALID, f"{file}: {error}") from None
+            raise Stop(error.status, f"{file}: {error}") from None
         bar(1.0, 1.0, "ready")
     found["warnings"] += odd
     if as_json:

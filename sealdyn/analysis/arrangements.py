@@ -33,7 +33,8 @@ class Arrangement:
 
     def clearance(self, speed: float) -> float:
         """Clearance (m) at which the film holds the closing force at a shaft speed (rad/s)."""
-        return self.model.clearance + axial_shift(self.model, self.model.start, float(speed))[0]
+        model = self.model.at_speed(float(speed))
+        return model.clearance + axial_shift(model, model.start, float(speed))[0]
 
     def relative_tilts(self, speed: float) -> tuple[complex, complex]:
         """Static and dynamic relative tilt (stator minus rotor) per unit forcing (rad/rad), each in its frame, by
@@ -114,9 +115,12 @@ def tilting(ring) -> cf.TiltingRing:
 
 
 def seals_of(scene: Scene) -> dict[str, Arrangement]:
-    """The arrangements {"fmr": ..., "fms": ..., "fmsr": ...} of the scene's seal, nothing imposed, clearance kept."""
-    clearance = Model(frozen_at_start(scene)).clearance
-    scene = frozen_at_start(scene, clearance=clearance)
+    """The arrangements {"fmr": ..., "fms": ..., "fmsr": ...} of the scene's seal, nothing imposed, clearance kept, or
+    the closing force of heated faces."""
+    scene = frozen_at_start(scene)
+    if scene.film.heat is None:
+        # That of heated faces follows the speed, under the same closing force.
+        scene = frozen_at_start(scene, clearance=Model(scene).clearance)
     quiet = replace(scene, housing=Housing(), initial=Initial(), shaft=replace(scene.shaft, whirl=[], motion=None))
     quiet = replace(quiet, rotor=replace(quiet.rotor, axial_runout=[]))
     return {name: Arrangement(quiet, name) for name in SEALS}

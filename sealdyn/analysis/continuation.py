@@ -7,6 +7,7 @@ import numpy as np
 from ..dynamics.interface import Interface
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
+from ..dynamics.warm_state import at_work
 from ..numerics import time_series
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..numerics.time_series import two_trajectories
@@ -31,7 +32,7 @@ def frozen_at_end(scene):
     if film.clearance is not None and any(
         isinstance(p, PiecewiseLinear) for p in (film.inner_pressure, film.outer_pressure)
     ):
-        law = Interface(scene, 1e-6).closing
+        law = Interface(at_work(scene)[0], 1e-6).closing
         scene = with_values(scene, {"closing": Closing(law.balance_ratio, law.spring)})
     return tables_at_end(scene)
 

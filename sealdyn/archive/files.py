@@ -24,6 +24,8 @@ import h5py
 import numpy as np
 from filelock import FileLock, Timeout
 
+from ..status import Status
+
 # Longest time (s), processor time (s) and most memory (bytes) that looking through takes; objects, attributes and depth
 # of groups at most.  The system ends what runs in circles, even if whoever asked is gone.
 PATIENCE, WORK, MEMORY, MOST, DEEPEST = 30, 4, 8 << 30, 10_000, 8
@@ -67,7 +69,7 @@ FILE, DATASET = 1 << 18, 1 << 13
 
 
 class ArchiveError(Exception):
-    """A file that cannot be read as an archive, or cannot be continued; one line.
+    """A file that cannot be read as an archive, or cannot be continued; one line, and the `status` of a run of it.
 
     >>> try:
     ...     sealdyn.open_archive("nothing.h5")
@@ -75,6 +77,8 @@ class ArchiveError(Exception):
     ...     print(error)
     nothing.h5: no such file
     """
+
+    status = Status.INVALID
 
 
 def link_target(path: str | os.PathLike) -> Path:

@@ -40,7 +40,11 @@ def thermal_coning(scene, interval) -> tuple[float, float]:
     film = scene.film
     change = coning_change(scene, lambda quantity: constant_and_slope(quantity, interval)[0], speed=0.0)
     rate, warming = (constant_and_slope(quantity, interval)[1] for quantity in (film.coning, film.temperature or 0.0))
-    return change, rate + film.coning_per_kelvin * warming
+    rate += film.coning_per_kelvin * warming
+    if film.coning_per_pressure:
+        outer, inner = (constant_and_slope(p, interval) for p in (film.outer_pressure, film.inner_pressure))
+        rate += film.coning_per_pressure * math.copysign(1.0, outer[0] - inner[0]) * (outer[1] - inner[1])
+    return change, rate
 
 
 def set_conditions(s, scene, value, speed=None) -> None:

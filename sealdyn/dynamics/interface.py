@@ -388,8 +388,8 @@ REMEMBERED = 64
 class Asked:
     """A scene as what a search may be remembered by."""
 
-    def __init__(self, scene, film):
-        self.scene, self.film, self.words = scene, film, f"{film.name} {scene!r}"
+    def __init__(self, scene, film=None):
+        self.scene, self.film, self.words = scene, film, f"{film and film.name} {scene!r}"
 
     def __eq__(self, other):
         return self.words == other.words

@@ -37,7 +37,7 @@ def linear_scene(model, interval, speed: float | None = None, shift: float | Non
     w_s = constant_and_slope(model.scene.stator.speed, interval)[0]
     resting = shift is None and model.unknowns.faces_tilt
     if shift is None:
-        if speed is not None and moves_with_speed(model.scene.film):
+        if speed is not None and moves_with_speed(model.given.film):
             shift, balanced = axial_shift(model, interval, speed)
             if not balanced:
                 found = f"{speed:g} rad/s, at which no film holds the closing force"
@@ -128,12 +128,12 @@ def linear_in_speed(model, interval=None) -> bool:
     """Whether the matrices at any shaft speed, the rest as at an interval's start, follow from one linearisation of the
     film."""
     plain = model.interface.floor_is_clear(interval) and model.interface.unknowns is None
-    return plain and not moves_with_speed(model.scene.film) and not waves_of(model.scene)
+    return plain and not moves_with_speed(model.given.film) and not waves_of(model.scene)
 
 
 def moves_with_speed(film) -> bool:
     """Whether the aligned gap of a `Film` is another at another speed."""
-    return film.inertia or follows_speed(film)
+    return film.inertia or follows_speed(film) or film.heat is not None
 
 
 def whirl_over_speed(model, interval):

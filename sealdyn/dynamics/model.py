@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from ..faces.geometry import FACE_SIZE
+from ..numerics.piecewise_linear import initially
 from ..scene.film import aligned_gaps, coning_change
 from ..scene.rings import RING_NAMES
 from ..scene.scene import Scene, SceneError
@@ -30,11 +31,19 @@ class Model:
     `capture_speed` (m/s) below which a ring on its secondary seal is captured; `algebraic` places of unknowns without
     mass and damping, or of the film's without a rate; `start` the first interval.  The scene names its film, unless a
     `film` is given (Film, films/_contract.py).  `film_error`: relative, of the film's
-    integrals (default a hundredth of the accuracy).
+    integrals (default a hundredth of the accuracy).  `given` the scene as it was, `heat` its WarmState (None without
+    `[film.heat]`): `scene` is as warm, throughout.
     """
 
     def __init__(self, scene: Scene, accuracy: float = 1e-6, observed=None, film=None, film_error=None):
-        made = None
+        self.given, made = scene, None
+        self.heat = None
+        if scene.film.liquid is not None:
+            # Loaded only where temperature counts.
+            from .warm_state import at_work
+
+            scene, self.heat = at_work(scene)
+        self._warm = {} if self.heat is None else {float(initially(scene.shaft.speed)): self}
         if scene.stator.elastic is not None:
             from .elastic_ring import at_rest
 
@@ -67,7 +76,7 @@ class Model:
         that is observed; one of cells has no integrals to sharpen, and is the same."""
         if self.unknowns.film_unknowns:
             return self
-        return Model(self.scene, self.accuracy, None, self.film, share * self.film_error)
+        return Model(self.given, self.accuracy, None, self.film, share * self.film_error)
 
     def _imposed(self) -> list:
         """Everything that may be a table."""
@@ -159,12 +168,28 @@ class Model:
         """The linearised scene at an interval's start, or at another shaft speed (rad/s), or with aligned faces at
         another `shift` (m) of the gap (linearisation.py)."""
         interval = interval or self.start
+        if speed is not None and self.heat is not None:
+            return self.at_speed(float(speed)).linear_scene(shift=shift)
         if speed is not None:
             return linearisation.linear_scene(self, interval, speed, shift)
         key = interval.key, None if shift == self.axial_shift(interval) else shift
         if key not in self._linear_scenes:
             self._linear_scenes[key] = linearisation.linear_scene(self, interval, shift=key[1])
         return self._linear_scenes[key]
+
+    def at_speed(self, speed: float) -> "Model":
+        """The same with the warm state of another shaft speed (rad/s); itself where nothing is warm.  Raises
+        NoWarmState."""
+        if self.heat is None:
+            return self
+        from .warm_state import at_work
+
+        if speed not in self._warm:
+            beside = self._warm[min(self._warm, key=lambda w: abs(w - speed))].heat
+            scene, heat = at_work(self.given, speed, beside)
+            self._warm[speed] = Model(scene, self.accuracy, None, self.film, self.film_error)
+            self._warm[speed].heat = heat
+        return self._warm[speed]
 
     def still_film(self, interval: Interval, shift: float):
         """Slopes (condensation.py) of a film that is linear in the rates, at an interval's start without mean spin, the

@@ -15,6 +15,7 @@ from ..status import Status
 ELSEWHERE = 0.02
 # Rise (K) beyond which a leakage cannot carry the heat, whatever the liquid: it would boil, or be no lubricant.
 CARRIED = 100.0
+ZERO_CELSIUS = 273.15
 # How a number below what the accuracy resolves begins.
 BELOW = "below "
 
@@ -81,7 +82,10 @@ def _face_lines(summary) -> Iterator[Line]:
     if film.get("exit_mach") is not None:
         choked = "choked" if film["exit_mach"] >= 1.0 else "not choked"
         yield Line("", [("Mach number where the gas leaves", film["exit_mach"], "1"), (choked, None, "")])
-    yield _friction(friction, closing["face_area"])
+    heat = summary.get("heat")
+    yield _friction(friction, closing["face_area"]) if heat is None else _work(friction)
+    if heat is not None:
+        yield from _heat_lines(heat)
     if _another(film.get("friction_power"), friction["power"]):
         yield Line("", [("aligned, at the end", film["friction_power"], "power")], detail=True)
     yield Line("film", [("clearance", film["clearance"], "clearance"),
@@ -207,6 +211,31 @@ def _friction(friction, area) -> Line:
         parts.append(("of face", friction["power"] / area, "heat_flux"))
     more = f"more than the leakage can carry (over {CARRIED:.0f} K)" if rise is not None else ""
     return Line("friction", [*parts, (more, None, "")])
+
+
+def _work(friction) -> Line:
+    return Line("friction", [("", friction["power"], "power"), ("torque", friction["torque"], "torque")])
+
+
+def _heat_lines(heat) -> Iterator[Line]:
+    """The warm state: temperature and coning, and as details what the faces were before and where the heat goes."""
+    coned, cold = heat["coning_by_heat"], heat["cold"]
+    faces = heat["face_temperature"] - ZERO_CELSIUS
+    yield Line("heat", [("faces", faces, "degC"), ("by heat", heat["rise"], "temperature"),
+                        ("coning", heat["coning"], "tilt"), ("of it by heat", coned, "tilt")])  # fmt: skip
+    if cold["clearance"] is not None:
+        before = ("unheated: clearance", cold["clearance"], "clearance")
+        yield Line("", [before, ("leakage", cold["leakage"], "leakage"), ("friction", cold["power"], "power")])
+    if (ends := heat["interval"]) is not None and None not in ends["rise"]:
+        parts = [
+            ("half and twice the convection", ends["rise"][0], "temperature"),
+            ("and", ends["rise"][1], "temperature"),
+        ]
+        parts += [("coning", ends["coning"][0], "tilt"), ("and", ends["coning"][1], "tilt")]
+        yield Line("", parts, detail=True)
+    taken = [(f"to the {name}", share, "share") for name, share in heat["shares"].items()]
+    more = [("viscosity", heat["viscosity"], "viscosity"), ("loop gain", heat["loop_gain"], "1")]
+    yield Line("", [*taken, *more], detail=True)
 
 
 def _contact_lines(contact, end: float) -> Iterator[Line]:

@@ -9,12 +9,14 @@ from .contact import contact_errors, contact_thresholds, film_in_words, limit_in
 from .excitation import motion_errors, random_errors
 from .film import aligned_gaps, coned, follows_speed, pads_errors, profile_errors, reynolds_errors
 from .gas import GASES, gas_of
+from .heat import heat_errors
+from .liquid import liquid_errors
 from .rings import body_errors, elastic_errors, secondary_seal_errors
 from .scene import SceneError
 from .sweep import sweep_errors
 
 # Of keys that may not step, if not rad.
-UNITS = {"temperature": "K", "speed": "rad/s"}
+UNITS = {"temperature": "K", "speed": "rad/s", "outer_pressure": "Pa", "inner_pressure": "Pa"}
 
 
 def check_scene(scene, run) -> None:
@@ -29,6 +31,7 @@ def scene_errors(scene, run) -> list[SceneError]:
     bad = _broken(_film, scene) or _broken(_profile, scene)
     bad += _broken(_cavitation, scene.film) + _broken(_liquid if scene.film.gas is None else _gas, scene.film)
     bad += [SceneError(*error) for error in (*waviness_errors(scene), *elastic_errors(scene))]
+    bad += [SceneError(*error) for error in (heat_errors(scene) if scene.film.heat is not None else ())]
     bad += _broken(_closing, scene)
     for name, ring in (("stator", scene.stator), ("rotor", scene.rotor)):
         bad += _broken(_ring, name, ring) + _broken(check_no_step, name, ring)
@@ -96,26 +99,43 @@ def _coning(scene) -> None:
     elif film.coning_reference_temperature is not None:
         found = "a temperature without film.coning_per_kelvin"
         raise SceneError("film.coning_reference_temperature", found, "both of them, or none")
-    check_no_step("film", film, ("coning", *(["temperature"] if film.coning_per_kelvin else [])))
+    if (film.coning_per_pressure != 0.0) != (film.coning_reference_pressure is not None):
+        found = "a pressure without film.coning_per_pressure"
+        if film.coning_per_pressure:
+            found = "nothing, with film.coning_per_pressure"
+        raise SceneError("film.coning_reference_pressure", found, "both of them, or none")
+    follows = ["temperature"] if film.coning_per_kelvin else []
+    if film.coning_per_pressure:
+        follows += ["outer_pressure", "inner_pressure"]
+        times = {t for p in (film.outer_pressure, film.inner_pressure) for t in getattr(p, "time", (0.0,))}
+        sealed = [_at(film.outer_pressure, t) - _at(film.inner_pressure, t) for t in times]
+        if min(sealed) < 0.0 < max(sealed):
+            found = "a sealed pressure that changes sides"
+            raise SceneError("film.coning_per_pressure", found, "the higher pressure always on one side")
+    check_no_step("film", film, ("coning", *follows))
     if follows_speed(film):
         check_no_step("shaft", scene.shaft, ["speed"])
 
 
 def _liquid(film) -> None:
-    if film.viscosity is None:
+    for key, *words in liquid_errors(film) if film.liquid is not None else ():
+        raise SceneError(f"film.{key}", *words)
+    if film.viscosity is None and film.liquid is None:
         raise SceneError("film.viscosity", "nothing", Viscosity.__metadata__[0].expected())
     for key in ("temperature", "gas_dam", "gas_reynolds"):
-        if getattr(film, key) is None or (key == "temperature" and film.coning_per_kelvin):
+        if getattr(film, key) is None or (key == "temperature" and (film.coning_per_kelvin or film.liquid)):
             continue
         found, expected = "a key of gases, with a liquid", f"nothing, or film.gas = {_names(GASES)}"
         if key == "temperature":
-            found = "a temperature of a liquid, on which nothing hangs without film.coning_per_kelvin"
-            expected += ", or film.coning_per_kelvin"
+            found = "a temperature of a liquid, on which nothing hangs without film.liquid or film.coning_per_kelvin"
+            expected += ", film.liquid, or film.coning_per_kelvin"
         raise SceneError(f"film.{key}", found, expected)
 
 
 def _gas(film) -> None:
     gas = gas_of(film)
+    for key, *words in liquid_errors(film) if film.liquid is not None else ():
+        raise SceneError(f"film.{key}", *words)
     if not 1.0 < gas.heat_ratio <= 5.0 / 3.0 + 1e-9:
         raise SceneError("film.gas.heat_ratio", f"{gas.heat_ratio:g}", "a ratio above 1, at most 5/3")
     if film.temperature is None:
@@ -221,6 +241,10 @@ def _ring(name: str, ring) -> None:
         raise SceneError(f"{key}.radius", "nothing", "radius (of the ring of springs), or tilt_stiffness")
     if support.radius is not None and support.radius <= 0:
         raise SceneError(f"{key}.radius", f"{support.radius:g} m", "a length > 0")
+
+
+def _at(quantity, time: float) -> float:
+    return quantity.at(time) if isinstance(quantity, PiecewiseLinear) else quantity
 
 
 def check_no_step(name: str, table, keys=("runout", "misalignment")) -> None:
@@ -332,7 +356,9 @@ def unused(scene, given: set[str]) -> list[str]:
     leaves = []
     for name, ring in (("rotor", scene.rotor), ("stator", scene.stator)):
         if ring.support is None:
-            leaves += [f"{name}.{key}" for key in RIGID_LEAVES] + [f"initial.{name}.", f"{name}.secondary_seal."]
+            kept = ("body",) if scene.film.heat is not None and name in scene.film.heat.rings else ()
+            leaves += [f"{name}.{key}" for key in RIGID_LEAVES if key not in kept]
+            leaves += [f"initial.{name}.", f"{name}.secondary_seal."]
     if scene.rotor.support is None:
         leaves += ["rotor.misalignment", "rotor.misalignment_phase"]
     else:

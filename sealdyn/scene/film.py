@@ -1,18 +1,19 @@
 """The `[film]` table: faces, fluid and pressures, its pads and the options of the Reynolds film; the profile of faces
-that are not plain cones; and coning that follows time, the speed of the shaft, which turns a ring inside out, and the
-temperature of the film,
+that are not plain cones; and coning that follows time, the speed of the shaft, which turns a ring inside out, the
+temperature of the film and the sealed pressure,
 
     coning = film.coning(t) + coning_per_speed_squared w^2 + coning_per_kelvin (T - coning_reference_temperature)
+             + coning_per_pressure (|p_o - p_i| - coning_reference_pressure)
 
 **Source** of the coning: Zuk, NASA TM X-68022 (1972), Figs. 2 and 3: sketches of centrifugal and thermal coning,
 without numbers; in linear elasticity the first goes with the square of the speed, the second with the temperature.
-**Valid** rings that deform far slower than they vibrate; both numbers are the user's.
+**Valid** rings that deform far slower than they vibrate; the numbers are the user's.
 """
 
 import math
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 
@@ -28,16 +29,25 @@ from ..units import (
     Length,
     Listed,
     Pressure,
+    Quantity,
     Radius,
     SignedTiltDamping,
     SignedTiltStiffness,
     SpecificHeat,
     Temperature,
     Tilt,
+    Usual,
     Varying,
     Viscosity,
 )
 from .gas import Gas, GasDam, GasName, GasReynolds
+from .heat import Heat
+from .liquid import Liquid, LiquidName
+
+PressureDifference = Annotated[float, Quantity("pressure difference", "Pa", '"10 bar"', (), 0,
+    usual=Usual(1e3, 1e9, "bar"))]  # fmt: skip
+ConingPerPressure = Annotated[float, Quantity("coning per pressure", "rad/Pa", '"-20 urad/bar"',
+    usual=Usual(0.0, 1e-8, "urad/bar"))]  # fmt: skip
 
 
 def follows_speed(film) -> bool:
@@ -47,7 +57,8 @@ def follows_speed(film) -> bool:
 
 def coning_varies(film) -> bool:
     """Whether the coning of a `Film` may be another than the number of its key."""
-    return isinstance(film.coning, PiecewiseLinear) or follows_speed(film) or film.coning_per_kelvin != 0.0
+    follows = film.coning_per_kelvin != 0.0 or film.coning_per_pressure != 0.0
+    return isinstance(film.coning, PiecewiseLinear) or follows_speed(film) or follows
 
 
 def coning_change(scene, value=initially, speed=None) -> float:
@@ -60,6 +71,9 @@ def coning_change(scene, value=initially, speed=None) -> float:
     change = value(film.coning) - initially(film.coning) + film.coning_per_speed_squared * speed**2
     if film.coning_per_kelvin:
         change += film.coning_per_kelvin * (value(film.temperature) - film.coning_reference_temperature)
+    if film.coning_per_pressure:
+        sealed = abs(value(film.outer_pressure) - value(film.inner_pressure))
+        change += film.coning_per_pressure * (sealed - film.coning_reference_pressure)
     return change
 
 
@@ -69,8 +83,8 @@ def coned(scene, value=initially, speed=None):
     if not coning_varies(film):
         return film
     coning = initially(film.coning) + coning_change(scene, value, speed)
-    none = dict(coning_per_speed_squared=0.0, coning_per_kelvin=0.0, coning_reference_temperature=None)
-    return replace(film, coning=coning, **none)
+    none = dict.fromkeys(("coning_per_speed_squared", "coning_per_kelvin", "coning_per_pressure"), 0.0)
+    return replace(film, coning=coning, **none, coning_reference_temperature=None, coning_reference_pressure=None)
 
 
 # Edge of a pad's flank where it is not given, as a share of the pad's shorter side.
@@ -261,8 +275,13 @@ class Film:
     """Dynamic viscosity, the same over the face; of a gas by Sutherland's law at its temperature where not given."""
     gas: GasName | Gas | None = None
     """A gas, by name or as a table of its numbers; without it the film is a liquid."""
+    liquid: LiquidName | Liquid | None = None
+    """A liquid over its temperature, in place of `viscosity`, `density`, `specific_heat` and `vapour_pressure`."""
     temperature: Varying[Temperature] | None = None
-    """Of a gas: total temperature of the reservoir.  Of a liquid only what `coning_per_kelvin` follows."""
+    """Of a gas: total temperature of the reservoir.  Of a liquid: of the sealed one, which `liquid` and
+    `coning_per_kelvin` follow."""
+    heat: Heat | None = None
+    """What the rings take of the film's heat, and how it cones them."""
     model: str = "auto"
     """"auto": the linear film where its estimated error is within the accuracy, else the radial or profiled one; of a
     gas "gas_reynolds"."""
@@ -271,15 +290,20 @@ class Film:
     tilt_radius: Literal["local", "mean"] = "local"
     """Arm of the tilt in film thickness and contact moment: the local radius, or everywhere the mean radius."""
     clearance: Height | None = None
-    """Film thickness of the aligned faces at the inner radius; without it [closing] decides."""
+    """Film thickness of the aligned faces at the inner radius, with `heat` of the unheated ones; without it [closing]
+    decides."""
     coning: Varying[Tilt] = 0.0
-    """Slope of the faces: the film is thicker outwards where positive."""
+    """Slope of the faces: the film is thicker outwards where positive; with `heat` of the unheated faces."""
     coning_per_speed_squared: ConingPerSpeedSquared = 0.0
     """Centrifugal coning: what the shaft speed squared adds to it."""
     coning_per_kelvin: ConingPerKelvin = 0.0
     """Thermal coning: what each kelvin of `temperature` above `coning_reference_temperature` adds to it."""
     coning_reference_temperature: Temperature | None = None
     """Temperature at which the coning is that of `coning`."""
+    coning_per_pressure: ConingPerPressure = 0.0
+    """What each pascal of the sealed pressure above `coning_reference_pressure` adds to it."""
+    coning_reference_pressure: PressureDifference | None = None
+    """Difference of the pressures at which the coning is that of `coning`."""
     density: Density = 1000.0
     """Of a liquid: for mass flow, heating of the leakage, Reynolds numbers and inertia."""
     inertia: bool = False

@@ -93,19 +93,23 @@ def gas_of(film) -> Gas | None:
 
 
 def viscosity_of(film):
-    """Viscosity (Pa s, number or function of time) of a `Film` table: its own, or that of its gas at the temperature,
-    between the points of a table of temperatures at 16 more."""
+    """Viscosity (Pa s, number or function of time) of a `Film` table: its own, or its gas's at the temperature."""
     if film.viscosity is not None or film.gas is None:
         return film.viscosity
-    gas, temperature = gas_of(film), film.temperature
+    return over_temperature(film.temperature, gas_of(film).viscosity)
+
+
+def over_temperature(temperature, law):
+    """A property by its `law(temperature)`, number or function of time as the `temperature` (K) is: between the points
+    of a table at 16 more."""
     if not isinstance(temperature, PiecewiseLinear):
-        return gas.viscosity(temperature)
+        return law(temperature)
     times, values = list(temperature.time[:1]), list(temperature.value[:1])
     for (t0, v0), (t1, v1) in pairwise(zip(temperature.time, temperature.value, strict=True)):
         pieces = 16 if t1 > t0 and v1 != v0 else 1
         times += [t0 + (t1 - t0) * k / pieces for k in range(1, pieces)] + [t1]
         values += [v0 + (v1 - v0) * k / pieces for k in range(1, pieces)] + [v1]
-    return PiecewiseLinear(tuple(times), tuple(map(gas.viscosity, values)))
+    return PiecewiseLinear(tuple(times), tuple(map(law, values)))
 
 
 def density_of(film) -> float:

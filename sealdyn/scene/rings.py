@@ -3,7 +3,7 @@ drawing, a ring that bends, and the friction of its O-ring."""
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import Literal
+from typing import Annotated, Literal, NamedTuple
 
 from ..units import (
     Angle,
@@ -16,34 +16,67 @@ from ..units import (
     Length,
     LineForce,
     Mass,
+    Quantity,
     Radius,
+    SpecificHeat,
     Speed,
     Stiffness,
+    Stress,
     Tilt,
     TiltDamping,
     TiltStiffness,
+    Usual,
     Varying,
     Velocity,
 )
 from .contact import Waviness
+from .liquid import ThermalConductivity
 
+Expansion = Annotated[float, Quantity("thermal expansion", "1/K", '"4.5e-6 1/K"', (), 0, True,
+    usual=Usual(1e-7, 1e-3, "um/(m*K)"))]  # fmt: skip
 # Tilt (rad) up to which the equations hold, which are linear in tilts: gap and pressure are then off by 2e-4, half its
 # square, and no seal runs so far off.
 SMALL_TILT = 0.02
 # What a body gives its ring.
 INERTIAL = ("mass", "transverse_inertia", "polar_inertia")
-# kg/m^3.  Faces: data sheet of a maker of seal faces, Omegaslate (UK) Ltd, "Physical and mechanical properties of
-# materials" (carbon graphite: resin impregnated; silicon carbide: sintered or reaction bonded; tungsten carbide:
-# cobalt or nickel binder).  Steel: EN 1994-1-2 (2005), 3.4; stainless grades are up to 2 % heavier.
-# Nothing but densities: roughness, strength, friction and wear are those of a pair of faces and of their finish.
-DENSITIES = {
-    "carbon graphite": 1800.0,
-    "antimony carbon graphite": 2500.0,
-    "silicon carbide": 3100.0,
-    "tungsten carbide": 14700.0,
-    "steel": 7850.0,
+
+
+class Solid(NamedTuple):
+    """Numbers of a material: `density` kg/m^3, Young's `modulus` Pa, `poisson` its ratio, `expansion` 1/K,
+    `conductivity` W/(m K), `specific_heat` J/(kg K)."""
+
+    density: float
+    modulus: float
+    poisson: float
+    expansion: float
+    conductivity: float
+    specific_heat: float
+
+
+# Faces, alumina, bronze and steel 431 (density, E, conductivity, expansion): data sheet of a maker of seal faces,
+# Omegaslate (UK) Ltd, "Physical and mechanical properties of materials" (carbon graphite: resin impregnated; silicon
+# carbide: sintered; tungsten carbide: cobalt binder).  Steel 316: a tube maker's sheet.  Plain steel: EN 1994-1-2
+# (2005), 3.3.1 and 3.4, at 20 degC.  Poisson's ratios and specific heats: typical values, which hardly matter.
+# Other sheets have silicon carbide at 120 to 170 W/(m K) and 4.0 to 4.5e-6 1/K, carbon at 9 to 12 W/(m K): coning by
+# heat goes with expansion over conductivity and is so known to 30 %.
+# No roughness, strength, friction or wear: those are of a pair of faces and of their finish.
+MATERIALS = {
+    "carbon graphite": Solid(1800.0, 23e9, 0.2, 3.0e-6, 11.0, 750.0),
+    "antimony carbon graphite": Solid(2500.0, 33e9, 0.2, 3.5e-6, 13.5, 750.0),
+    "silicon carbide": Solid(3100.0, 390e9, 0.16, 4.8e-6, 100.0, 670.0),
+    "reaction bonded silicon carbide": Solid(3100.0, 413e9, 0.16, 4.3e-6, 200.0, 670.0),
+    "tungsten carbide": Solid(14700.0, 630e9, 0.22, 5.1e-6, 88.0, 210.0),
+    "nickel bonded tungsten carbide": Solid(14700.0, 600e9, 0.22, 4.8e-6, 73.0, 210.0),
+    "alumina": Solid(3870.0, 365e9, 0.22, 6.9e-6, 30.0, 880.0),
+    "steel": Solid(7850.0, 210e9, 0.3, 12.2e-6, 53.3, 440.0),
+    "steel 431": Solid(7720.0, 210e9, 0.3, 11.1e-6, 18.8, 460.0),
+    "steel 316": Solid(8027.0, 200e9, 0.3, 16.5e-6, 14.6, 470.0),
+    "lead bronze": Solid(9000.0, 68e9, 0.34, 18.4e-6, 71.0, 380.0),
 }
-Material = Literal["carbon graphite", "antimony carbon graphite", "silicon carbide", "tungsten carbide", "steel"]
+Material = Literal[
+    "carbon graphite", "antimony carbon graphite", "silicon carbide", "reaction bonded silicon carbide",
+    "tungsten carbide", "nickel bonded tungsten carbide", "alumina", "steel", "steel 431", "steel 316", "lead bronze",
+]  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -64,14 +97,31 @@ class Body:
     length: Length
     """Along the shaft axis."""
     material: Material | None = None
-    """Its density: 1800 (carbon graphite), 2500 (with antimony), 3100, 14700 and 7850 kg/m^3; or give `density`."""
+    """Its density: 1800 (carbon graphite), 2500 (with antimony), 3100 (both silicon carbides), 14700 (both tungsten
+    carbides), 3870, 7850 (steel), 7720, 8027 and 9000 kg/m^3; or give `density`."""
     density: Density | None = None
     """In place of `material`."""
+    conductivity: ThermalConductivity | None = None
+    """In place of the material's, as those below: for `film.heat` only."""
+    expansion: Expansion | None = None
+    """Coefficient of linear thermal expansion."""
+    modulus: Stress | None = None
+    """Young's modulus."""
+    poisson: float | None = None
+    """Poisson's ratio."""
+    specific_heat: SpecificHeat | None = None
+    """Of the ring."""
+
+    def solid(self) -> dict[str, float | None]:
+        """The numbers of its material by the names of `Solid`, its own first; None of what nobody gives."""
+        known = MATERIALS[self.material]._asdict() if self.material is not None else {}
+        own = {name: getattr(self, name) for name in Solid._fields}
+        return {name: known.get(name) if value is None else value for name, value in own.items()}
 
     def inertia(self) -> tuple[float, float, float]:
         """Mass m = rho pi (r_o^2 - r_i^2) L (kg), transverse m (3 (r_o^2 + r_i^2) + L^2)/12 and polar inertia
         m (r_o^2 + r_i^2)/2 (kg m^2), about the centre of mass."""
-        density = DENSITIES[self.material] if self.density is None else self.density
+        density = MATERIALS[self.material].density if self.density is None else self.density
         inner, outer = self.inner_radius**2, self.outer_radius**2
         mass = density * math.pi * (outer - inner) * self.length
         return mass, mass * (3 * (outer + inner) + self.length**2) / 12, mass * (outer + inner) / 2
@@ -94,9 +144,11 @@ def body_errors(body: Body) -> list[tuple[str, str, str]]:
         bad.append(("outer_radius", f"{body.outer_radius:g} m", f"more than inner_radius = {body.inner_radius:g} m"))
     if body.length <= 0:
         bad.append(("length", f"{body.length:g} m", "a length > 0"))
+    if body.poisson is not None and not 0.0 <= body.poisson < 0.5:
+        bad.append(("poisson", f"{body.poisson:g}", "a ratio from 0 to 0.5"))
     if (body.material is None) == (body.density is None):
         found = "neither" if body.density is None else "both"
-        bad.append(("material", found, f"one of density and material ({', '.join(DENSITIES)})"))
+        bad.append(("material", found, f"one of density and material ({', '.join(MATERIALS)})"))
     return bad
 
 

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 
+from ..status import Status
 from ..units import Force, Height, Share, Tilt, TiltRate, Varying, Velocity, cut
 from .contact import Contact
 from .excitation import Housing, Shaft
@@ -85,7 +86,9 @@ class Scene:
 
 
 class SceneError(ValueError):
-    """A scene that cannot exist: the key to blame, what was found, what is expected."""
+    """A scene that cannot exist: the key to blame, what was found, what is expected, and the `status` of its run."""
+
+    status = Status.INVALID
 
     def __init__(self, key: str, found: str, expected: str):
         super().__init__(key, found, expected)

@@ -123,10 +123,15 @@ def tables_at_end(scene: Scene) -> Scene:
 def frozen_at_start(scene: Scene, speed: float | None = None, clearance: float | None = None) -> Scene:
     """The scene with every function of time at its initial value, and at another shaft speed (rad/s) or clearance (m)
     if given; with a clearance, the closing force is what holds it."""
-    scene = _constant(scene, lambda table: table.at(0.0))
+    scene = frozen_at(scene, 0.0)
     if speed is not None:
         scene = with_values(scene, {"shaft.speed": float(speed)})
     return scene if clearance is None else with_values(scene, {"film.clearance": clearance, "closing": Closing()})
+
+
+def frozen_at(scene: Scene, time: float) -> Scene:
+    """The scene with every function of time at its value at a `time` (s)."""
+    return _constant(scene, lambda table: table.at(time))
 
 
 def unforced(scene: Scene, speed: float) -> Scene:

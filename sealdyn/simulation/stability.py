@@ -132,7 +132,7 @@ def held_speeds(model, interval, low: float, high: float) -> tuple[float, float]
     """The part of [low, high] (rad/s, without sign) in which an aligned film holds the closing force as it does at the
     shaft's speed: inertia and coning that follow the speed leave none far from it.  Of a range beyond that the last
     speed towards it that has one, twice."""
-    if not moves_with_speed(model.scene.film):
+    if not moves_with_speed(model.given.film):
         return low, high
     spin = model.linear_scene(interval).rings[ROTOR].spin
     direction, own = -1.0 if spin < 0.0 else 1.0, abs(spin) or low

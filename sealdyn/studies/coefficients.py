@@ -187,7 +187,9 @@ def _against_clearance(scene, model, settings) -> dict:
     clearances, rows = np.geomspace(low, high, max(2, settings.points)), []
     for clearance in clearances:
         try:
-            rows.append(_listed(matrices(Model(frozen_at_start(scene, clearance=float(clearance)), ACCURACY), State())))
+            rows.append(
+                _listed(matrices(Model(frozen_at_start(model.scene, clearance=float(clearance)), ACCURACY), State()))
+            )
         except (SceneError, ValueError) as error:
             rows.append({"failed": str(error)})
     return _columns("clearance", clearances, rows)

@@ -176,7 +176,8 @@ def touching_when_aligned(scene, rough: float) -> dict | None:
     if not rough:
         return None
     scene = variants.frozen_at_start(scene)
-    model, film = Model(scene), scene.film
+    model = Model(scene)
+    scene, film = model.scene, model.scene.film
     thinnest, radius = min((h, r) for r, h in model.aligned_gaps())
     if thinnest >= rough:
         return None

@@ -108,7 +108,7 @@ def by_formula(model) -> tuple[float | None, str]:
     scene = model.scene
     if model.interface.stores:
         return None, "a film that stores: no published formula"
-    if moves_with_speed(scene.film):
+    if moves_with_speed(model.given.film):
         return None, "a gap that moves with the speed: no published formula"
     if model.unknowns.floats[STATOR] and model.unknowns.floats[ROTOR]:
         return None, "both rings float: no published formula"
@@ -345,7 +345,7 @@ def _tables(numbers) -> list[Table]:
     eigen, time, growth = numbers["eigenvalue"], numbers["time_domain"], numbers["growth"]
     methods = [("formula", numbers["formula"], None), ("eigenvalues", eigen, None),
                ("in time", time["value"], time["uncertainty"])]  # fmt: skip
-    rows = [[name, speed, doubt, speed / eigen - 1.0] for name, speed, doubt in methods if speed]
+    rows = [[name, speed, doubt, speed / eigen - 1.0 if eigen else None] for name, speed, doubt in methods if speed]
     columns = [("1", "method"), ("speed", "critical speed"), ("speed", "uncertainty"), ("1", "over eigenvalues'")]
     tables = [Table("threshold", columns, rows)]
     columns = [("speed", "speed"), ("1", "over threshold"), ("growth_rate", "growth by eigenvalues"),

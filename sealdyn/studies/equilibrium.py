@@ -17,7 +17,8 @@ from ..dynamics.equilibrium import (
     settle,
     support_stiffness,
 )
-from ..dynamics.interface import Interface, flow_at_rest, opening_parts, rest_state
+from ..dynamics.interface import Interface, flow_at_rest, opening_law, opening_parts, rest_state
+from ..dynamics.warm_state import at_work, warming
 from ..faces.geometry import CAVITATED, CONTACT_PRESSURE, CONTACT_TORQUE, FLOW_INNER, SPIN_DIFFERENCE, TORQUE, WEAR
 from ..numerics.piecewise_linear import initially
 from ..quantities import in_words, resolved
@@ -26,6 +27,7 @@ from ..scene.film import coned
 from ..scene.gas import density_of
 from ..scene.scene import Closing, SceneError
 from ..scene.variants import frozen_at_start
+from ..simulation.heat import heat_of
 from ..units import Length
 from . import Info
 
@@ -38,9 +40,11 @@ INFO = Info(
         **dict.fromkeys(("opening_force", "film_force", "contact_force"), "N"), "stiffness": "N/m", "range": "m",
         "clearance": "m", "held": "m", "mass_flow": "kg/s", "leakage": "m^3/s",
         **dict.fromkeys(("wear_rate", "standing", "travelling"), "m/s"),
-        **dict.fromkeys(("load_support", "friction_coefficient", "cavitated_fraction"), "1"),
+        **dict.fromkeys(("load_support", "friction_coefficient", "cavitated_fraction", "loop_gain", "shares"), "1"),
+        **dict.fromkeys(("rise", "face_temperature"), "K"), "coning": "rad", "viscosity": "Pa*s",
+        **dict.fromkeys(("power", "contact_power", "carried"), "W"),
     },
-    along={"curve": ("clearance",)},
+    along={"curve": ("clearance",), "balance": ("rise",)},
 )  # fmt: skip
 # What is drawn of the force of asperities, in closing forces, and of the stiffness, in that of the stiffest root.
 SHOWN = 3.0
@@ -94,13 +98,17 @@ def find(scene) -> Found:
 
 def run(scenario, settings, tools) -> Answer:
     """All equilibria in the range, the opening force over clearance and the closing force."""
-    scene = kept_waves(frozen_at_start(scenario.scene))
+    given = kept_waves(frozen_at_start(scenario.scene))
+    warm = warming(given) if given.film.heat is not None else None
+    scene = at_work(given)[0] if warm is None else _as_warm(warm)
     found, film, surfaces = find(scene), coned(scene), (waves_of(scene), scene.contact)
     low, high = _range(film, surfaces, found.roots, settings)
-    roots = [root for root in found.roots if low <= root.clearance <= high]
+    rows = _warm_rows(given, warm) if warm is not None else [
+        root_row(scene, root, found, breakaway(scene)) for root in found.roots if low <= root.clearance <= high
+    ]  # fmt: skip
     clearance = np.geomspace(low, high, max(3, settings.points))
     carried = np.array([found.opening(c, *found.pressures) for c in clearance])
-    force, friction = carried.sum(axis=1), breakaway(scene)
+    force = carried.sum(axis=1)
     # Steps smaller than the distance to closed faces.
     steps = 1e-4 * (clearance - extent(film, *surfaces)[1])
     stiffness = np.array([
@@ -109,13 +117,13 @@ def run(scenario, settings, tools) -> Answer:
     ])  # fmt: skip
     support = support_stiffness(scene)
     numbers = {
-        "roots": [root_row(scene, root, found, friction) for root in roots],
+        "roots": rows,
         "closing_force": found.closing,
         "balance_ratio": float(found.law.balance_ratio),
         "spring_force": float(initially(found.law.spring)),
-        "closing_said": found.said,
+        "closing_said": found.said if warm is None else warm.said,
         "support_stiffness": support,
-        "friction": friction,
+        "friction": breakaway(scene),
         "range": [float(low), float(high)],
         "curve": {
             "clearance": clearance.tolist(),
@@ -124,7 +132,32 @@ def run(scenario, settings, tools) -> Answer:
             "stiffness": stiffness.tolist(),
         },
     }
+    if warm is not None:
+        numbers["why_none"] = "" if rows else warm.why_none()
+        numbers["balance"] = {
+            "rise": [state.rise for state in warm.scanned],
+            "power": [state.power for state in warm.scanned],
+            "carried": [(warm.conductance + state.carried) * state.rise for state in warm.scanned],
+        }
     return Answer(numbers, _found(numbers), _tables(numbers), _panels(numbers), _notes(numbers, scene))
+
+
+def _as_warm(warm):
+    """The scene in the first of its warm states, or unheated if it has none."""
+    states = sorted(warm.states, key=lambda state: not state.stable)
+    return warm.at(states[0].rise, states[0].clearance) if states else warm.at(0.0)
+
+
+def _warm_rows(scene, warm) -> list[dict]:
+    """Every warm state as a row: what `root_row` says of it with the faces and the liquid so warm, and its heat."""
+    rows = []
+    for state in warm.states:
+        plain = warm.at(state.rise, state.clearance)
+        found = find(plain)
+        (root,) = settle(plain, opening_law(plain))[2]
+        row = root_row(plain, replace(root, stable=state.stable), found, breakaway(plain))
+        rows.append({**row, "heat": heat_of(scene, state)})
+    return rows
 
 
 def kept_waves(scene):
@@ -247,6 +280,8 @@ def _found(numbers) -> str:
     low, high = (in_words("clearance", end) for end in numbers["range"])
     if stable:
         return f"The seal rides at {' or '.join(stable)}: {carried} the closing force there, stably."
+    if numbers.get("why_none"):
+        return f"No warm state: {numbers['why_none']}."
     kind = "only unstably" if rows else "nowhere"
     return f"Between {low} and {high} {carried} the closing force {kind}."
 
@@ -265,6 +300,10 @@ def _tables(numbers) -> list[Table]:
         columns += [("wear_rate", "of crests, standing"), ("wear_rate", "travelling")]
         worn = [root.get("stator_wear", {}) for root in numbers["roots"]]
         rows = [[*row, one.get("standing"), one.get("travelling")] for row, one in zip(rows, worn, strict=True)]
+    if any("heat" in root for root in numbers["roots"]):
+        columns += [("temperature", "rise"), ("tilt", "coning"), ("power", "heat"), ("1", "loop gain")]
+        keys = ("rise", "coning", "power", "loop_gain")
+        rows = [[*row, *(root["heat"][k] for k in keys)] for row, root in zip(rows, numbers["roots"], strict=True)]
     if any("held" in root for root in numbers["roots"]):
         columns += [("clearance", "held by friction from"), ("clearance", "to")]
         rows = [[*row, *root.get("held", (None, None))] for row, root in zip(rows, numbers["roots"], strict=True)]
@@ -282,7 +321,10 @@ def _notes(numbers, scene) -> list[str]:
         notes.append(f"The film carries {least} to {most} there.")
     if any(not root["stable"] for root in roots):
         notes.append("From an unstable clearance the faces close, or open to a stable one.")
-    if any(not root["stable"] and root["stiffness"] + numbers["support_stiffness"] > 0 for root in roots):
+    if any(
+        not root["stable"] and "heat" not in root and root["stiffness"] + numbers["support_stiffness"] > 0
+        for root in roots
+    ):
         notes.append("The support's stiffness would hold an unstable one.")
     if sum(root["stable"] for root in roots) > 1:
         notes.append("Several stable clearances: the start of a run decides which one the seal takes.")
@@ -321,8 +363,28 @@ def _panels(numbers) -> list[Panel]:
     )
     level = Level(closing, "closing force", style="theory dashed", number=True)
     force = Axis("force", "axial force", low=lowest - 0.08 * span, high=max(most, closing) + 0.18 * span)
+    balance = [_heat_panel(numbers)] if numbers.get("balance", {}).get("rise") else []
     return [
         Panel("Opening and closing force", over, force, [one for one in forces if len(one.x)], [level], tall=1.4),
         Panel("Axial stiffness (negative: the gap runs away)", over, Axis("axial_stiffness", **ends),
               [one for one in stiff if len(one.x)], [Level(0.0, style="black")], below=True),
+        *balance,
     ]  # fmt: skip
+
+
+def _heat_panel(numbers) -> Panel:
+    """Heat that is made and that leaves over the rise of the faces; they cross at the warm states."""
+    balance = numbers["balance"]
+    shown = max([3.0 * root["heat"]["rise"] for root in numbers["roots"]] or [balance["rise"][-1]])
+    upto = sum(rise <= shown for rise in balance["rise"]) + 1
+    rise, made, left = (balance[key][:upto] for key in ("rise", "power", "carried"))
+    lines = [Series("line", rise, made, label="made", style="film thick"), Series("line", rise, left, label="leaves")]
+    for stable, style in ((True, "good circle large front"), (False, "bad cross large front")):
+        heats = [root["heat"] for root in numbers["roots"] if root["stable"] == stable]
+        if heats:
+            names = [in_words("temperature", heat["rise"]) for heat in heats]
+            at = [heat["rise"] for heat in heats], [heat["power"] for heat in heats]
+            lines.append(Series("marks", *at, label="stable" if stable else "unstable", style=style, names=names))
+    top = 3.0 * max(root["heat"]["power"] for root in numbers["roots"]) if numbers["roots"] else None
+    return Panel("Heat made and heat that leaves", Axis("temperature", "rise of the faces"),
+                 Axis("power", "heat", low=0.0, high=top), lines)  # fmt: skip

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from ..answers import Answer, Axis, Panel, Series, Table
+from ..dynamics.warm_state import at_work
 from ..quantities import in_words
 from ..scenario.errors import ScenarioError
 from ..scenario.reader import with_values
@@ -71,7 +72,8 @@ def balances(scenario, values) -> dict:
     """OUTPUTS of a scenario with other `values`, {dotted key: as written}, where it rests: at the widest stable of its
     `roots`, which are those of the study equilibrium."""
     try:
-        scene = kept_waves(frozen_at_start(with_values(scenario, values).scene))
+        given = kept_waves(frozen_at_start(with_values(scenario, values).scene))
+        scene = at_work(given)[0]
         found = find(scene)
     except (ScenarioError, SceneError) as error:
         return {"failed": str(error)}
@@ -80,7 +82,7 @@ def balances(scenario, values) -> dict:
     rest = stable[-1] if stable else dict.fromkeys(OUTPUTS)
     said = {"status": "ok"} if stable else {"status": "no balance", "message": "nothing holds the faces apart"}
     # What is given decides what a balance is.
-    held = {"closing_said": found.said} if scene.film.clearance is not None else {}
+    held = {"closing_said": found.said} if given.film.clearance is not None else {}
     return {**said, **held, **{output: rest[output] for output in OUTPUTS}, "roots": roots}
 
 

@@ -14,6 +14,7 @@ from ..analysis.whirl import free_model, growth_rate
 from ..answers import Answer, Axis, Level, Panel, Series, Table
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
+from ..dynamics.warm_state import at_work
 from ..quantities import in_words, number
 from ..scene.film import Coefficients
 from ..scene.rings import ROTOR, STATOR
@@ -140,7 +141,7 @@ def free_ring(scene):
     if name is None:
         raise SceneError("rotor.transverse_inertia", "no floating ring with inertia", "one that can precess")
     speed = scene.shaft.speed if isinstance(scene.shaft.speed, float | int) else max(scene.shaft.speed.value, key=abs)
-    still = unforced(scene, float(speed))
+    still = unforced(at_work(scene)[0], float(speed))
     ring, held = (still.rotor, still.stator) if name == "rotor" else (still.stator, still.rotor)
     support = replace(ring.support, axial_damping=0.0, tilt_damping=None if ring.support.radius is not None else 0.0)
     if support.tilt()[0] <= 0.0 or speed == 0.0:

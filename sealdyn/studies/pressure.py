@@ -9,6 +9,7 @@ from scipy.integrate import simpson
 from ..analysis.film_matrices import State, gap_state
 from ..answers import Answer, Axis, Level, Panel, Series, Table
 from ..dynamics.interface import Interface
+from ..dynamics.warm_state import at_work
 from ..faces.contact import contact_load
 from ..faces.film_thickness import film_thickness, h_min
 from ..faces.geometry import (
@@ -100,8 +101,9 @@ def _clearances(name: str, beside) -> list[float]:
 
 def _at(scenario, place) -> tuple[dict, str]:
     """The answer at one place, and how its clearance was found, "" where it was given."""
-    scene, tilt = frozen_at_start(scenario.scene, clearance=place.get("clearance")), place.get("tilt", 0.0)
+    tilt = place.get("tilt", 0.0)
     try:
+        scene = frozen_at_start(at_work(scenario.scene)[0], clearance=place.get("clearance"))
         interface = Interface(tilting(scene) if tilt else scene, EXACT)
     except SceneError as error:
         key = "study.pressure.at" if "clearance" in place else error.key

@@ -1,6 +1,7 @@
 """A ring from its drawing: mass and inertias of a hollow cylinder."""
 
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ from hypothesis import strategies as st
 from sealdyn.scenario.reader import ScenarioError, parse_scenario, with_values
 from sealdyn.scenario.templates import template
 from sealdyn.scene import variants
-from sealdyn.scene.rings import DENSITIES, INERTIAL, Body
+from sealdyn.scene.rings import INERTIAL, MATERIALS, Body, Material
 from sealdyn.studies.stability.study import si_axis
 
 FMR = (Path(__file__).parents[2] / "scenarios" / "fmr_reference.toml").read_text()
@@ -35,13 +36,13 @@ def inertias(ring):
 @pytest.mark.core
 @settings(deadline=None)
 @given(
-    st.floats(0.0, 0.1), st.floats(1e-4, 0.1), st.floats(1e-4, 0.3), st.sampled_from([*DENSITIES]), st.floats(100, 2e4)
+    st.floats(0.0, 0.1), st.floats(1e-4, 0.1), st.floats(1e-4, 0.3), st.sampled_from([*MATERIALS]), st.floats(100, 2e4)
 )
 def test_the_integrals_over_the_ring(inner, width, length, material, density):
     """Against quadrature over radius and length: r dr dz 2 pi rho times 1, r^2, and r^2/2 + z^2."""
     outer = inner + width
     for body in (Body(inner, outer, length, material), Body(inner, outer, length, density=density)):
-        rho = DENSITIES[material] if body.density is None else density
+        rho = MATERIALS[material].density if body.density is None else density
 
         def over(weight, rho=rho):
             # Exact: the integrands are polynomials of degree 3 and 2.
@@ -133,3 +134,11 @@ def test_a_body_of_no_world_is_refused_by_its_key(key):
     words = ", ".join(f'{name} = "{value}"' for name, value in body.items())
     with pytest.raises(ScenarioError, match=key):
         parse_scenario(f"{template('fms').split('mass = ')[0]}body = {{ {words} }}\n", "seal")
+
+
+def test_every_material_has_its_numbers():
+    """Names of the key and of the table are the same; each number is that of a solid, in SI units."""
+    assert get_args(Material) == tuple(MATERIALS)
+    ranges = (1e3, 2e4), (1e10, 1e12), (0.1, 0.4), (1e-6, 3e-5), (5.0, 300.0), (100.0, 1500.0)
+    for solid in MATERIALS.values():
+        assert all(least < value < most for value, (least, most) in zip(solid, ranges, strict=True))

@@ -278,7 +278,7 @@ def confirmed(scenario, point: dict) -> dict:
         stator=replace(scene.stator, misalignment=0.0),
     )
     model, speed, rate = Model(scene), scene.shaft.speed, point["rate"]
-    scene = frozen_at_start(scene, clearance=model.clearance)
+    scene = frozen_at_start(model.scene, clearance=model.clearance)
     if rate == 0.0 or speed == 0.0:
         raise ValueError("neutral, or a shaft at rest: nothing to measure")
     length = (GROWN if rate > 0 else DECAYED) / abs(rate)

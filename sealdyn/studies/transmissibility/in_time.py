@@ -73,7 +73,8 @@ def measured(scene, point: dict) -> dict:
 
 def _amplitude(seal: Arrangement, speed: float, clearance: float) -> float:
     """Forcing (rad) that leaves the film of a `clearance` (m) open."""
-    film, change = seal.scene.film, coning_change(seal.scene, float, speed)
+    scene = seal.model.at_speed(speed).scene
+    film, change = scene.film, coning_change(scene, float, speed)
     thinnest = min(h for _, h in aligned_gaps(film, clearance, change))
     return AMPLITUDE * thinnest / film.outer_radius / max(1.0, seal.algebra(speed)[2])
 
@@ -88,7 +89,7 @@ def _forced(seal: Arrangement, speed: float, clearance: float, amplitude: float)
         axial_stiffness=linear.film_k[0, 0],
         axial_damping=linear.film_d[0, 0],
     )
-    scene = frozen_at_start(seal.scene, speed)
+    scene = frozen_at_start(seal.model.at_speed(speed).scene, speed)
     return replace(
         scene,
         # Inertia has moved the gap, and is in the coefficients.

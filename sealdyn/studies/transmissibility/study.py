@@ -250,8 +250,8 @@ def critical_misalignments(seal: Arrangement, speed: float, values) -> dict[str,
     """By its key, the misalignment of each of PARTNERS at first touch, of the asperities of rough faces, in units of
     C/r_o, the other key of KEYS being one such unit; from static and dynamic transmissibility, the first two of
     `values`; of none that closes the film, nor of faces that touch when aligned."""
-    film, rough = seal.scene.film, touch_height(seal.scene)
-    change = coning_change(seal.scene, float, speed)
+    scene = seal.model.at_speed(speed).scene
+    film, rough, change = scene.film, touch_height(scene), coning_change(scene, float, speed)
     touch = min((h - rough) / r for r, h in aligned_gaps(film, film.clearance, change))
     if values[0] is None or touch <= 0.0:
         return {}
@@ -285,7 +285,7 @@ def groups(seals: dict[str, Arrangement], speed: float) -> dict:
     if speed == 0.0:
         return {}
     seal = seals["fmsr"]
-    film = coned(seal.scene, float, speed)
+    film = coned(seal.model.at_speed(speed).scene, float, speed)
     face = dict(
         speed=speed,
         viscosity=viscosity_of(film),
@@ -354,7 +354,7 @@ def _tables(seals, numbers) -> tuple[list[Table], list[str]]:
         if any(value is not None for value in values):
             rows.append([name.upper() if road == "formula" or not numbers["formula_holds"] else "", ROADS[road],
                          *values[:4], key, values[4]])  # fmt: skip
-        film = seals[name].scene.film
+        film = seals[name].model.at_speed(speed).scene.film
         if road == "linear_algebra" and key and known[key] * film.clearance / film.outer_radius > SMALL_TILT:
             far.append(f"{name.upper()}: the critical {key} is beyond any small tilt, no limit.")
     columns = [

@@ -12,6 +12,7 @@ import numpy as np
 from pydantic import Field
 
 from ...answers import Answer, Axis, Panel, Series, Table
+from ...dynamics.warm_state import at_work
 from ...quantities import in_words
 from ...scenario.errors import ScenarioError
 from ...scene.film import coned
@@ -74,7 +75,9 @@ def run(scenario, settings, tools) -> Answer:
     radius = _radii(scenario.scene.film, settings.nodes)
     hats, rough = HatBasis(radius), scenario.scene.contact.roughness
     # What the averages may be wrong by: a tenth of what a step may, on the depth of about a roughness.
-    runs = ShortRunAverages(scenario.scene, radius, scenario.run.accuracy, 0.1 * settings.accuracy, settings.turns,
+    # Worn at the temperature of the unworn faces.
+    scene = at_work(scenario.scene)[0]
+    runs = ShortRunAverages(scene, radius, scenario.run.accuracy, 0.1 * settings.accuracy, settings.turns,
                     settings.patience)  # fmt: skip
     rows, end = _history(runs, hats, Control(rough, settings.accuracy, settings.step * rough), settings, tools)
     numbers = _numbers(runs, hats, wears, rows) | {"end": end}

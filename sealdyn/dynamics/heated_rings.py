@@ -1,0 +1,72 @@
+"""What a ring of a scene takes of the film's heat: numbers of its maker, or its drawing, material and cooling.
+
+**Source** faces/ring_heat.py for a ring from its drawing, closed_form/ring_fin.py for its convection by speed.
+**Valid** convection at the largest speed of the scene and the temperature of the sealed liquid, whatever the speed.
+"""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from ..numerics.piecewise_linear import initially
+from ..scene.liquid import liquid_of
+from ..scene.scene import SceneError
+from .intervals import largest_value
+
+if TYPE_CHECKING:
+    from ..faces.ring_heat import RingHeat
+
+
+@dataclass(frozen=True)
+class HeatedBody:
+    """A ring's `resistance` (K/W), `coning_per_watt` (rad/W) and `time_constant` (s, None where it is not known); of
+    one from its drawing also its `convection` (W/(m^2 K)), the Reynolds number of that by its speed and whether it is
+    `extrapolated`, its hottest place and the O-ring's over the face's mean rise, h w/k, whether its band is `narrow` or
+    the ring `long`, and all that is known of it (`whole`)."""
+
+    resistance: float
+    coning_per_watt: float
+    time_constant: float | None
+    convection: float | None = None
+    reynolds: float | None = None
+    extrapolated: bool = False
+    hottest: float | None = None
+    at_o_ring: float | None = None
+    biot: float | None = None
+    narrow: bool = False
+    long: bool = False
+    whole: "RingHeat | None" = None
+
+
+def heated_body(scene, name: str, cooling: float = 1.0) -> HeatedBody:
+    """What the ring called `name` takes of the heat, as given or from its body; its convection times `cooling`."""
+    ring = getattr(scene.film.heat, name)
+    if ring.convection is None:
+        return HeatedBody(ring.resistance, ring.coning_per_watt, ring.time_constant)
+    from ..closed_form.ring_fin import ring_cooling
+    from ..faces.ring_coning import RingBody
+    from ..faces.ring_heat import ring_heat
+
+    film, body, liquid, cooled = scene.film, getattr(scene, name).body, liquid_of(scene.film), None
+    sealed, convection = initially(film.temperature), ring.convection
+    outer_is_high = initially(film.outer_pressure) >= initially(film.inner_pressure)
+    wet = ring.wet or ("outer" if outer_is_high else "bore")
+    if convection == "becker":
+        speeds = {"rotor": largest_value(scene.shaft.speed), "stator": largest_value(scene.stator.speed)}
+        turns = speeds[name] != 0.0
+        fluid = [float(of(sealed)) for of in (liquid.density_at, liquid.viscosity_at, liquid.specific_heat_at,
+                                              liquid.conductivity_at)]  # fmt: skip
+        diameter = 2.0 * (body.inner_radius if wet == "bore" else body.outer_radius)
+        cooled = ring_cooling(speeds[name] if turns else max(speeds.values()), diameter, fluid, turns)
+        if not cooled.value > 0.0:
+            raise SceneError(f"film.heat.{name}.convection", '"becker" of a shaft at rest', "a shaft that turns")
+        convection = cooled.value
+    convection *= cooling
+    length = ring.wetted_length or body.length
+    drawn = RingBody(body.inner_radius, body.outer_radius, body.length, film.inner_radius, film.outer_radius,
+                     **body.solid(), convection=convection, wetted_length=length, wet=wet)  # fmt: skip
+    found = ring_heat(drawn)
+    return HeatedBody(
+        found.resistance, found.coning_per_watt, found.time_constant, convection,
+        cooled and cooled.reynolds, bool(cooled and cooled.extrapolated), found.hottest, found.at_o_ring, found.biot,
+        film.outer_radius - film.inner_radius < drawn.width / 3.0, body.length > 4.0 * drawn.width, found,
+    )  # fmt: skip

@@ -1,0 +1,392 @@
+"""Warm states: the temperature at which the heat that film and asperities make leaves through rings and leakage.
+
+Film and both faces have one temperature T = T_sealed + rise.  Each ring is a linear body: R (K/W), rise of its face
+over the heat that enters it, X (rad/W), its coning over that heat.  With G = sum 1/R, B = sum X/R and the leakage Q
+
+    H = torque x relative speed + Q |p_o - p_i| = (G + density specific_heat Q) rise
+    coning = cold coning + B rise,   viscosity at T,   clearance: film + asperities = closing force
+
+and in time, the film squeezed with the damping D,
+
+    C rise' = H - (G + density specific_heat Q) rise,  C = sum time_constant/R,  D clearance' = opening - closing force
+
+**Source** derived; the field is Lebeck, *Principles and Design of Mechanical Face Seals* (1991), and Brunetiere,
+Tournerie & Frene (2003).
+**Valid** liquids; walls and film of one temperature, as a film of a micrometre has it (b mu U^2/k below 1), and where
+the leakage carries less than a third of the heat.
+"""
+
+import math
+from copy import copy
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+
+import numpy as np
+
+from ..faces.geometry import CONTACT_FORCE, CONTACT_TORQUE, DZ_RATE, FLOW_INNER, FORCE, SPIN_DIFFERENCE, TORQUE
+from ..numerics.piecewise_linear import PiecewiseLinear, initially
+from ..scene.contact import waves_of
+from ..scene.film import coned
+from ..scene.liquid import in_numbers, liquid_of
+from ..scene.scene import Closing, SceneError
+from ..status import Status
+from .equilibrium import ClosingForce, crossing, equilibria, settle
+from .heated_rings import heated_body
+from .interface import Asked, Interface, flow_at_rest, opening_law, rest_state
+
+# Rises that are looked at between the first, as a share of the last, and the end of the liquid's table.
+SCANNED, FIRST = 60, 1e-4
+# Relative step of differences; relative error of the film's integrals.
+STEP, FINE = 1e-4, 1e-10
+# Rise, as a share of the last, below which there is none.
+TINY = 1e-9
+# Halvings towards the rise at which a film holds no more.
+HALVINGS = 30
+# From rise to rise in looking for the balance of a speed nearby: first, and at most.
+WIDER, WIDEST = 1.1, 1.5
+# From clearance to clearance in following one, and how far it is followed from rise to rise.
+STRIDE, REACH = 1.03, 60
+
+
+@dataclass(frozen=True)
+class WarmState:
+    """A state in which heat balances: `rise` (K) of the faces over the sealed liquid, `clearance` (m) and `coning`
+    (rad) then, `viscosity` (Pa s), heat made `power` (W), of it the asperities' `contact_power` and what the leakage
+    spends `flow_power`, `carried` (W/K) by the leakage, `loop_gain` dH/d(rise) over (G + carried), `slow` the least
+    damped
+    eigenvalue (1/s, complex; None without time constants), and whether it is `stable`; `torque` (N m) of film and
+    asperities, `excess` (N) of the opening force over the closing force, which is 0 at its clearance; `coned_by`:
+    coning by heat (rad)."""
+
+    rise: float
+    clearance: float
+    coning: float
+    viscosity: float
+    power: float
+    contact_power: float
+    flow_power: float
+    leakage: float
+    carried: float
+    torque: float
+    excess: float
+    coned_by: float
+    loop_gain: float = math.nan
+    slow: complex | None = None
+    stable: bool = True
+
+
+class Warming:
+    """A scene with `[film.heat]` at the conditions of its start: `rings` (HeatedBody by name), what it is at any rise,
+    and its warm states.  Raises SceneError where no closing force is known."""
+
+    def __init__(self, scene, cooling: float = 1.0):
+        self.law, self.said = _closing(_unheated(scene))
+        self.rings = {name: heated_body(scene, name, cooling) for name in scene.film.heat.rings}
+        self.conductance = sum(1.0 / ring.resistance for ring in self.rings.values())
+        self.coning_per_kelvin = sum(ring.coning_per_watt / ring.resistance for ring in self.rings.values())
+        known = all(ring.time_constant is not None for ring in self.rings.values())
+        stored = sum((ring.time_constant or 0.0) / ring.resistance for ring in self.rings.values())
+        self.capacity = stored if known and stored > 0.0 else None
+        self._begin(scene)
+
+    def under(self, scene) -> "Warming":
+        """The same rings and closing force law at the conditions of another scene: speed, pressures, temperature."""
+        other = copy(self)
+        for found in ("cold_state", "scanned", "states", "_coolest"):
+            vars(other).pop(found, None)
+        other._begin(scene)
+        return other
+
+    def _begin(self, scene):
+        self.scene = scene
+        film, liquid = scene.film, liquid_of(scene.film)
+        self.pressures = initially(film.inner_pressure), initially(film.outer_pressure)
+        given = scene.closing.spring_force
+        self.spring = self.law.spring if given is None else given
+        self.closing = self.law.at(*self.pressures, initially(self.spring))
+        self.sealed = initially(film.temperature)
+        self.highest = liquid.highest - self.sealed
+
+    def at(self, rise: float, clearance: float | None = None, coned_by: float | None = None):
+        """The scene, without heat, with faces and liquid `rise` (K) above the sealed one, and a clearance (m) if given;
+        its closing force is the same.  `coned_by`: coning by heat (rad), where it is not that of the steady rings."""
+        film = in_numbers(replace(self.scene.film, heat=None), rise)
+        change = self.coning_per_kelvin * rise if coned_by is None else coned_by
+        film = replace(film, coning=_more(film.coning, change), clearance=clearance)
+        closing = Closing(self.law.balance_ratio, self.spring) if clearance is not None else Closing()
+        return replace(self.scene, film=film, closing=closing)
+
+    def excess(self, rise: float):
+        """Function of the clearance (m): opening force in excess of the closing force (N) at a rise (K)."""
+        force = opening_law(self.at(rise))
+        return lambda clearance: force(clearance, *self.pressures) - self.closing
+
+    def clearance(self, rise: float, near: float | None = None) -> float | None:
+        """The clearance (m) that the film holds at a rise (K): that which continues a clearance `near`, or the widest
+        stable one; None if it holds none."""
+        excess = self.excess(rise)
+        if near is not None:
+            below = above = near
+            for _ in range(REACH):
+                if (e := excess(below)) > 0.0 >= excess(above):
+                    return crossing(excess, below, above)
+                below, above = (below, above * STRIDE) if e > 0.0 else (below / STRIDE, above)
+        scene = self.at(rise)
+        film, surfaces = coned(scene), (waves_of(scene), scene.contact)
+        force = opening_law(scene)
+        try:
+            roots = equilibria(film, force, self.closing, *self.pressures, *surfaces)
+        except SceneError:
+            return None
+        stable = [root.clearance for root in roots if root.stable]
+        return stable[-1] if stable else None
+
+    def state(self, rise: float, clearance: float, coned_by: float | None = None) -> WarmState:
+        """Heat made and carried at a rise (K) and a clearance (m), whether or not they balance; `coned_by` as in
+        `at`."""
+        scene = self.at(rise, clearance, coned_by)
+        film, interface = scene.film, Interface(_whole(scene), FINE)
+        s, _ = rest_state(scene, clearance)
+        flow_at_rest(interface, s)
+        opening = float(s[FORCE] + (s[CONTACT_FORCE] if interface.contact is not None else 0.0))
+        leakage = s[FLOW_INNER] * math.copysign(1.0, self.pressures[0] - self.pressures[1])
+        speed = self.scene.film.heat.friction * s[SPIN_DIFFERENCE]
+        rubbed, sheared = (float(abs(s[k] * speed)) for k in (CONTACT_TORQUE, TORQUE))
+        spent = float(abs(leakage * (self.pressures[1] - self.pressures[0])))
+        return WarmState(
+            rise, clearance, initially(coned(scene).coning), initially(film.viscosity), sheared + rubbed + spent,
+            rubbed, spent, float(leakage), film.density * film.specific_heat * abs(float(leakage)),
+            float(abs(s[TORQUE] + s[CONTACT_TORQUE])), opening - self.closing,
+            self.coning_per_kelvin * rise if coned_by is None else coned_by,
+        )  # fmt: skip
+
+    def damping(self, rise: float, clearance: float, coned_by: float | None = None) -> float:
+        """Axial damping (N s/m) of the film at a rise (K) and a clearance (m); `coned_by` as in `at`."""
+        scene, forces = self.at(rise, clearance, coned_by), []
+        interface = Interface(scene, FINE)
+        for rate in (-clearance, clearance):
+            s, _ = rest_state(scene, clearance)
+            s[DZ_RATE] = rate
+            interface.film_wrench(interface.f, s)
+            forces.append(s[FORCE])
+        return float(forces[0] - forces[1]) / (2.0 * clearance)
+
+    def surplus(self, state: WarmState) -> float:
+        """Heat (W) that is made and not carried away in a state."""
+        return state.power - (self.conductance + state.carried) * state.rise
+
+    @cached_property
+    def cold_state(self) -> WarmState | None:
+        """The state of unheated faces, None if they hold no film."""
+        return self.state(0.0, held) if (held := self.clearance(0.0)) else None
+
+    @cached_property
+    def scanned(self) -> list[WarmState]:
+        """States along the rise, each at the clearance that its film holds, up to where it holds none."""
+        found, near, rises = [], None, self.highest * np.concatenate([[0.0], np.geomspace(FIRST, 1.0, SCANNED)])
+        for rise in map(float, rises):
+            near = self.clearance(rise, near)
+            if near is not None:
+                found.append(self.state(rise, near))
+            elif found:
+                return found + self._closing_film(found[-1], rise)
+        return found
+
+    def _closing_film(self, last: WarmState, beyond: float) -> list[WarmState]:
+        """States ever nearer to the rise (K) at which the film holds no more, between the `last` of those that are and
+        one `beyond`: heat grows without bound there."""
+        found, rise, near = [], last.rise, last.clearance
+        for _ in range(HALVINGS):
+            middle = 0.5 * (rise + beyond)
+            clearance = self.clearance(middle, near)
+            if clearance is None:
+                beyond = middle
+            else:
+                rise, near = middle, clearance
+                found.append(self.state(rise, near))
+        return found
+
+    @cached_property
+    def states(self) -> list[WarmState]:
+        """Every warm state, the coolest first."""
+        scanned, found = self.scanned, []
+        surplus = [self.surplus(state) for state in scanned]
+        for k in range(len(scanned) - 1):
+            low, high = scanned[k], scanned[k + 1]
+            if surplus[k] * surplus[k + 1] <= 0.0 and surplus[k] != surplus[k + 1]:
+                found.append(self._balanced(low, high))
+            elif k > 0 and surplus[k] and self._may_dip(surplus, k):
+                found += self._dip(scanned[k - 1], low, high)
+        return [self._judged(state) for state in found]
+
+    @staticmethod
+    def _may_dip(surplus, k) -> bool:
+        """Whether the surplus has its least size of one sign at the place k of those scanned."""
+        before, here, after = (abs(surplus[j]) for j in (k - 1, k, k + 1))
+        return surplus[k - 1] * surplus[k] > 0.0 < surplus[k] * surplus[k + 1] and before > here < after
+
+    def _dip(self, before, here, after) -> list[WarmState]:
+        """The two states between which the surplus has the other sign, if it has it anywhere near its least size."""
+        from scipy.optimize import minimize_scalar
+
+        sign = math.copysign(1.0, self.surplus(here))
+        least = minimize_scalar(
+            lambda rise: sign * self._surplus_at(rise, here.clearance), bounds=(before.rise, after.rise),
+            method="bounded", options={"xatol": 1e-6 * after.rise},
+        )  # fmt: skip
+        if not least.fun < 0.0:
+            return []
+        middle = self.state(float(least.x), self.clearance(float(least.x), here.clearance))
+        return [self._balanced(before, middle), self._balanced(middle, after)]
+
+    def _surplus_at(self, rise, near) -> float:
+        clearance = self.clearance(rise, near)
+        return math.nan if clearance is None else self.surplus(self.state(rise, clearance))
+
+    def _balanced(self, low, high) -> WarmState:
+        """The state between two of opposite surplus."""
+        rise = crossing(lambda rise: self._surplus_at(rise, low.clearance), low.rise, high.rise)
+        return self.state(rise, self.clearance(rise, low.clearance))
+
+    def _judged(self, state: WarmState) -> WarmState:
+        """A state of balance with its loop gain, slow eigenvalue and stability."""
+        steps = STEP * max(state.rise, 1e-3) * np.array([-2.0, -1.0, 1.0, 2.0])
+        along = [self.state(state.rise + d, self.clearance(state.rise + d, state.clearance)) for d in steps]
+        made, left = (_slope([take(one) for one in along], steps) for take in (lambda one: one.power, self.surplus))
+        slow = self._slow(state)
+        stable = left < 0.0 if slow is None else slow.real < 0.0
+        return replace(state, loop_gain=made / (self.conductance + state.carried), slow=slow, stable=bool(stable))
+
+    def _slow(self, state: WarmState) -> complex | None:
+        """Least damped eigenvalue (1/s) of clearance and rise about a state; None without time constants."""
+        if self.capacity is None:
+            return None
+        damping = self.damping(state.rise, state.clearance)
+        gaps = STEP * state.clearance * np.array([-2.0, -1.0, 1.0, 2.0])
+        rises = STEP * max(state.rise, 1e-3) * np.array([-2.0, -1.0, 1.0, 2.0])
+
+        def slopes(value):
+            by_gap = _slope([value(state.rise, state.clearance + d) for d in gaps], gaps)
+            return by_gap, _slope([value(state.rise + d, state.clearance) for d in rises], rises)
+
+        squeezed = slopes(lambda rise, gap: self.state(rise, gap).excess / damping)
+        heated = slopes(lambda rise, gap: self.surplus(self.state(rise, gap)) / self.capacity)
+        values = np.linalg.eigvals(np.array([squeezed, heated]))
+        return complex(values[np.argmax(values.real)])
+
+    def working(self, near: WarmState | None = None) -> WarmState | None:
+        """The state that the seal works in, the coolest stable one; looked for beside one `near` first, that of a speed
+        nearby, whose stability is then that of the balance alone.  None if there is none."""
+        if near is not None:
+            return self._beside(near) if near.rise > 0.0 else None
+        return self._coolest
+
+    @cached_property
+    def _coolest(self) -> WarmState | None:
+        if self.cold_state is not None and (found := self._beside(self.cold_state)) is not None:
+            found = self._judged(found)
+            if found.stable:
+                return found
+        return next((state for state in self.states if state.stable), None)
+
+    def _beside(self, near: WarmState) -> WarmState | None:
+        """The balance that continues one `near`, where the surplus falls; None if there is none."""
+        low = high = self._held(near.rise, near.clearance)
+        if low is None:
+            # No film so warm: from the cold on.
+            low = high = self.cold_state
+        wider = WIDER
+        while low is not None and high is not None:
+            if self.surplus(low) >= 0.0 > self.surplus(high):
+                return self._balanced(low, high)
+            if self.surplus(low) < 0.0:
+                low, high = self._held(low.rise / wider, low.clearance), low
+            else:
+                low, high = high, self._held(max(high.rise * wider, FIRST * self.highest), high.clearance)
+            wider = min(wider**2, WIDEST)
+        return None
+
+    def _held(self, rise: float, near: float) -> WarmState | None:
+        """The state at a rise (K) and the clearance that continues one `near` (m); None where no film holds."""
+        clearance = self.clearance(rise, near) if TINY * self.highest < rise < self.highest else None
+        return None if clearance is None else self.state(rise, clearance)
+
+    def why_none(self) -> str:
+        """Why there is no warm state, in words."""
+        if not self.scanned:
+            return "no film holds the closing force at any temperature of the liquid's table"
+        last = self.scanned[-1]
+        if last.rise < self.highest * (1.0 - 1e-9):
+            return f"the film collapses by heat: none holds the closing force {last.rise:.4g} K above the sealed liquid"
+        end, times = self.sealed + last.rise - 273.15, last.power / ((self.conductance + last.carried) * last.rise)
+        return f"at {end:.4g} degC, where the liquid's table ends, the film makes {times:.3g} times the heat it loses"
+
+
+def _slope(values, steps) -> float:
+    """Derivative by a fourth-order central difference of values at -2, -1, 1 and 2 steps."""
+    return float((values[0] - 8.0 * values[1] + 8.0 * values[2] - values[3]) / (6.0 * (steps[3] - steps[2]) * 2.0))
+
+
+def _more(quantity, change: float):
+    """A number or function of time with a change."""
+    if isinstance(quantity, PiecewiseLinear):
+        return PiecewiseLinear(quantity.time, tuple(value + change for value in quantity.value))
+    return quantity + change
+
+
+def _unheated(scene):
+    """The scene with faces that take no heat and the numbers of its liquid."""
+    return replace(scene, film=in_numbers(replace(scene.film, heat=None)))
+
+
+def _whole(scene):
+    """The scene with the film whose coefficients a linear one borrows: that one's leakage and friction are observed."""
+    borrows = scene.film.model == "linear" and scene.film.coefficients == "radial"
+    return replace(scene, film=replace(scene.film, model="radial")) if borrows else scene
+
+
+def _closing(cold) -> tuple[ClosingForce, str]:
+    """The closing force of a scene without heat, as given or what holds its clearance, and a sentence."""
+    film, closing = cold.film, cold.closing
+    if film.clearance is not None:
+        return settle(cold, opening_law(cold))[1::2]
+    if closing.balance_ratio is None or closing.spring_force is None:
+        raise SceneError("film.clearance", "nothing", "a length, or both balance_ratio and spring_force")
+    area = math.pi * (film.outer_radius**2 - film.inner_radius**2)
+    outer = initially(film.outer_pressure) >= initially(film.inner_pressure)
+    law = ClosingForce(area, closing.balance_ratio, closing.spring_force, outer)
+    return law, "closing force from balance ratio and spring"
+
+
+@lru_cache(maxsize=64)
+def _warming(asked, cooling) -> Warming:
+    return Warming(asked.scene, cooling)
+
+
+def warming(scene, cooling: float = 1.0) -> Warming:
+    """The `Warming` of a scene with `[film.heat]`, remembered; convection that is reckoned or given times `cooling`."""
+    return _warming(Asked(scene), cooling)
+
+
+class NoWarmState(SceneError):
+    """Heat that nothing balances: a film that collapses by it, or beyond the table of its liquid."""
+
+    status = Status.COLLAPSED
+
+
+def at_work(scene, speed: float | None = None, near: WarmState | None = None):
+    """The scene as it works: the numbers of its liquid in place of the liquid, faces coned by the heat that is made at
+    a shaft speed (rad/s; its own), clearance and closing force of that; and its WarmState, None without `[film.heat]`,
+    looked for beside one `near` first.  Raises NoWarmState."""
+    if scene.film.heat is None:
+        return (scene if scene.film.liquid is None else _unheated(scene)), None
+    found = warming(scene)
+    if speed is not None:
+        found = found.under(replace(scene, shaft=replace(scene.shaft, speed=speed)))
+    state = found.working(near)
+    if state is None and near is not None:
+        raise NoWarmState("shaft.speed", f"no warm state at {speed:.6g} rad/s", "a speed whose heat is carried away")
+    if state is None:
+        why = found.why_none() if not found.states else "every balance of heat is unstable"
+        raise NoWarmState("film.heat", f"no warm state: {why}", "a seal whose heat its rings and leakage carry away")
+    return found.at(state.rise, state.clearance), state

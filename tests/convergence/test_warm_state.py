@@ -1,0 +1,201 @@
+"""Warm states beside an independent computation, a closed form, and runs of the scene with the warm numbers put in."""
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+from warm_seals import (
+    COEFFICIENTS,
+    COLD,
+    FOLDS,
+    INSIDE,
+    NAMES,
+    PUMP,
+    ROUGH,
+    ROWS,
+    TOLERANCE,
+    VG32,
+    scene_of,
+    warm_seal,
+)
+
+import sealdyn
+from sealdyn import Scenario
+from sealdyn.dynamics.interface import Interface
+from sealdyn.dynamics.warm_state import warming
+
+SCENARIOS = Path(__file__).parents[2] / "scenarios"
+# A liquid that never thins, and whose leakage carries no heat.
+DEAD = {"density": 1e-3, "specific_heat": 1.0, "viscosity": [["1 degC", 8e-4], ["900 degC", 8e-4]]}
+RPM = math.pi / 30.0
+
+
+@pytest.mark.core
+@pytest.mark.parametrize(("changes", "rows"), ROWS.values(), ids=ROWS)
+def test_warm_states_are_those_of_an_independent_computation(changes, rows):
+    found = warming(scene_of(changes))
+    assert len(found.states) == len(rows)
+    for state, row in zip(found.states, rows, strict=True):
+        viscous = state.power - state.contact_power - state.flow_power
+        numbers = {**vars(state), "viscous": viscous}
+        for name, value in zip(NAMES, row, strict=True):
+            # Loop gains have three digits, or four decimals.
+            margin = dict(rel=5e-3, abs=6e-5) if name == "loop_gain" else dict(rel=TOLERANCE)
+            assert value is None or numbers[name] == pytest.approx(value, **margin), name
+        # Heat balances far better than it is known.
+        left = (found.conductance + state.carried) * state.rise
+        assert left == pytest.approx(state.power, rel=1e-9)
+    # The coolest works; a second one is the thin film from which a seal collapses.
+    assert [state.stable for state in found.states] == [True, False][: len(rows)]
+
+
+@pytest.mark.parametrize("name", COLD)
+def test_so_are_the_states_before_anything_is_warm(name):
+    cold, (clearance, friction) = warming(scene_of(ROWS[name][0])).cold_state, COLD[name]
+    assert (cold.clearance, cold.power - cold.flow_power) == pytest.approx((clearance, friction), rel=TOLERANCE)
+
+
+def test_film_coefficients_are_those_of_the_warm_film():
+    found = warming(scene_of())
+    (state,) = found.states
+    for rise, clearance, expected in ((0.0, found.cold_state.clearance, 0), (state.rise, state.clearance, 1)):
+        k, d = Interface(found.at(rise, clearance), 1e-10).linearised()[:2]
+        assert (k[0, 0], k[1, 1], d[1, 1]) == pytest.approx(COEFFICIENTS[expected], rel=TOLERANCE)
+
+
+@pytest.mark.parametrize(("thins", "fold"), list(enumerate(FOLDS)), ids=["dead", "water"])
+def test_the_fold_of_a_seal_pressurised_inside(thins, fold):
+    """The speed from which heat has no balance: by counting the states."""
+    changes = INSIDE if thins else INSIDE | {"film.liquid": _unthinned()}
+
+    def at(rpm):
+        return warming(scene_of(changes, shaft__speed=rpm * RPM))
+
+    low, high = 0.8 * fold, 1.25 * fold
+    assert len(at(low).states) == 2 and not at(high).states
+    while high - low > 1e-3 * fold:
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if at(middle).states else (low, middle)
+    assert 0.5 * (low + high) == pytest.approx(fold, rel=0.01)
+    assert at(high).working() is None
+
+
+def _unthinned():
+    """Water whose viscosity stays that of 30 degC."""
+    at = math.exp(-10.57455285 + 552.34120971 / (303.15 - 142.78519617))
+    return {"density": 995.6, "specific_heat": 4180.0, "viscosity": [["1 degC", at], ["400 degC", at]]}
+
+
+@pytest.mark.core
+@pytest.mark.parametrize(("s", "ratios"), [(2.7062, [2.2194]), (-0.2, [0.72361, 0.27639])])
+def test_a_smooth_film_that_does_not_thin_obeys_the_quadratic(s, ratios):
+    """y^2 - y - s = 0 for the coning, and the clearance, over the cold ones; s = (B/G) cold friction / cold coning."""
+    changes = {"film.liquid": DEAD, "film.outer_pressure": 1.1e6} if s > 0 else INSIDE | {"film.liquid": DEAD}
+    cold = warming(scene_of(changes)).cold_state
+    # Friction goes with the square of the speed, which decides s.
+    found = warming(scene_of(changes))
+    one = found.coning_per_kelvin / found.conductance * (cold.power - cold.flow_power) / cold.coning
+    assert one * s > 0.0
+    states = warming(scene_of(changes, shaft__speed=math.sqrt(s / one) * found.scene.shaft.speed)).states
+    assert [state.coning / cold.coning for state in states] == pytest.approx(ratios, rel=1e-4)
+    assert [state.clearance / cold.clearance for state in states] == pytest.approx(ratios, rel=1e-4)
+
+
+@pytest.mark.parametrize("changes", [{}, INSIDE, ROUGH], ids=["pump", "inside", "rough"])
+def test_slow_stiffness_over_fast_is_that_of_the_loops(changes):
+    """k_slow/k_fast = (1 - L0)/(1 - L00): L0 with the clearance that follows, L00 with one that is held."""
+    found = warming(scene_of(changes))
+    state = found.states[0]
+    step = 1e-4 * state.clearance
+
+    def force(clearance, rise):
+        return found.excess(rise)(clearance)
+
+    def held(clearance):
+        """The rise at which heat balances while the clearance is held."""
+        near = 0.5 * state.rise, 2.0 * state.rise
+        return brentq(lambda rise: found.surplus(found.state(rise, clearance)), *near, xtol=1e-13, rtol=1e-13)
+
+    def slope(value):
+        return (value(1) - value(-1)) / 2.0
+
+    slow = slope(lambda n: force(state.clearance + n * step, held(state.clearance + n * step)))
+    fast = slope(lambda n: force(state.clearance + n * step, state.rise))
+    warmer = 1e-4 * state.rise
+    held_loop = slope(lambda n: found.state(state.rise + n * warmer, state.clearance).power) / warmer
+    held_loop /= found.conductance + state.carried
+    # The leakage's own change with the rise is within this: it carries 0.01 % of the heat.
+    assert slow / fast == pytest.approx((1.0 - state.loop_gain) / (1.0 - held_loop), rel=5e-4)
+
+
+# --- a run is that of the scene with the warm numbers put in ---------------------------------------------
+
+FILMS = {
+    "radial": {"film.model": "radial"},
+    "profiled": {
+        "film.model": "profiled",
+        "film.profile": {"radius": [0.025, 0.0275, 0.03], "depth": [0.0, 5e-8, 0.0]},
+    },
+    "linear": {"film.model": "linear", "film.coefficients": "radial"},
+    "rough": ROUGH,
+    "oil": {"film.liquid": VG32, "film.temperature": "60 degC", "film.coning": 2e-4},
+    "reynolds with waves": {
+        "film.coning": 4e-4, "film.model": "reynolds", "film.cavitation_pressure": 1e5,
+        "film.reynolds": {"cells_r": 4, "cells_theta": 32}, "stator.waviness": [{"order": 2, "amplitude": 2e-7}],
+    },
+}  # fmt: skip
+
+
+def by_hand(scenario):
+    """The same seal without heat, the numbers of its first warm state in place of liquid and coning."""
+    state = warming(scenario.scene).states[0]
+    table = scenario.to_dict()
+    film = {k: v for k, v in table["film"].items() if k not in ("heat", "liquid", "temperature")}
+    liquid = warming(scenario.scene).at(state.rise).film
+    film |= {"viscosity": state.viscosity, "coning": state.coning, "density": liquid.density}
+    film |= {"specific_heat": liquid.specific_heat}
+    if liquid.vapour_pressure is not None:
+        film["vapour_pressure"] = liquid.vapour_pressure
+    return Scenario.from_dict(table | {"film": film}, "by hand")
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [pytest.param(FILMS[name], marks=pytest.mark.slow if "waves" in name else (), id=name) for name in FILMS],
+)
+def test_a_run_is_that_with_the_warm_numbers_put_in(changes):
+    scenario = warm_seal(changes).with_({"run.turns": 1})
+    warm, plain = sealdyn.run(scenario), sealdyn.run(by_hand(scenario))
+    assert warm.status == plain.status == "ok"
+    one, other = warm.summary, plain.summary
+    for part, key in (("film", "clearance"), ("leakage", "mean"), ("friction", "power"), ("h_min", "value")):
+        assert one[part][key] == pytest.approx(other[part][key], rel=2e-6), (part, key)
+    assert one["stability"]["growth_rate"] == pytest.approx(other["stability"]["growth_rate"], rel=1e-4)
+    for name in ("stator_tilt_x", "h_min"):
+        found, expected = warm.data[name].values, plain.data[name].values
+        assert np.max(np.abs(found - expected)) <= 1e-5 * np.max(np.abs(expected))
+    assert one["heat"]["coning"] == pytest.approx(by_hand(scenario).scene.film.coning, rel=1e-12)
+    assert "heat" not in other or other["heat"] is None
+
+
+def test_what_is_told_adds_up():
+    """Shares are all of the heat; the film's friction, which a run measures, is the heat that the state made."""
+    found = sealdyn.run(warm_seal().with_({"run.turns": 1})).summary
+    heat = found["heat"]
+    assert sum(heat["shares"].values()) == pytest.approx(1.0, rel=1e-9)
+    assert heat["power"] == pytest.approx(found["friction"]["power"], rel=5e-3)
+    assert heat["face_temperature"] - heat["rise"] == pytest.approx(PUMP["film"]["temperature"])
+    assert heat["coning"] - heat["coning_by_heat"] == pytest.approx(PUMP["film"]["coning"])
+    assert heat["cold"]["clearance"] == pytest.approx(COLD["pump, 50 urad"][0], rel=TOLERANCE)
+
+
+def test_a_slow_eigenvalue_needs_every_time_constant():
+    table = warm_seal().to_dict()["film"]["heat"]
+    without = {**table, "rotor": {k: v for k, v in table["rotor"].items() if k != "time_constant"}}
+    (state,) = warming(scene_of({"film.heat": without})).states
+    assert state.slow is None and state.stable
+    (whole,) = warming(scene_of()).states
+    assert replace(state, slow=whole.slow, stable=whole.stable) == whole

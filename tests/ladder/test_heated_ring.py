@@ -1,0 +1,289 @@
+"""A ring from its drawing: temperatures, coning and their course in time, against finite elements and formulas."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from own_ring import Ring
+from scipy.linalg import eigh
+
+from sealdyn.closed_form.ring_fin import coning_per_speed_squared, ring_fin
+from sealdyn.faces.ring_coning import (
+    RingBody,
+    coning_by_bow,
+    coning_by_temperature,
+    pressure_coning,
+    section_weights,
+)
+from sealdyn.faces.ring_heat import RADIAL, conduction, ring_heat
+from sealdyn.scene.rings import MATERIALS
+
+CARBON = dict(
+    density=1800.0, modulus=20e9, poisson=0.2, expansion=4.5e-6, conductivity=10.0, specific_heat=750.0
+)  # fmt: skip
+SILICON_CARBIDE = dict(
+    density=3100.0, modulus=410e9, poisson=0.16, expansion=4e-6, conductivity=125.0, specific_heat=670.0
+)  # fmt: skip
+STEEL = dict(
+    density=7950.0, modulus=193e9, poisson=0.3, expansion=16e-6, conductivity=15.0, specific_heat=500.0
+)  # fmt: skip
+
+
+def body(inner, outer, length, material, convection, band=None, wetted=None, wet="outer") -> RingBody:
+    """A ring by its radii and length in mm."""
+    band = (inner, outer) if band is None else band
+    sizes = [1e-3 * x for x in (inner, outer, length, *band)]
+    return RingBody(*sizes, **material, convection=convection, wetted_length=1e-3 * (wetted or length), wet=wet)
+
+
+# Rows of an independent program: R (K/W), X (rad/W) and crown (m/W) by finite elements, R, X and time constant (s) by
+# finite volumes of the same size, and by how much X may differ from finite elements.
+ROWS = {
+    "carbon, face is section": (
+        body(30.5, 34, 10, CARBON, 5000.0),
+        (0.45519, 6.2619e-6, 7.29e-10), (0.45546, 6.2522e-6, 0.7497), 0.03,
+    ),
+    "silicon carbide, wet face": (
+        body(29, 38, 8, SILICON_CARBIDE, 8000.0, (30.5, 34)),
+        (0.079492, 2.4778e-7, 5.06e-11), (0.07965, 2.5144e-7, 1.301), 0.04,
+    ),
+    "steel, wet bore": (
+        body(30.5, 34, 10, STEEL, 5000.0, wet="bore"),
+        (0.372, 1.2438e-5, 1.9e-9), (0.37217, 1.2471e-5, 2.211), 0.04,
+    ),
+    "carbon, O-ring": (
+        body(29, 36, 20, CARBON, 5000.0, (30.5, 34), 12),
+        (0.42178, 2.6839e-6, 7.39e-10), (0.42405, 2.7428e-6, 1.708), 0.05,
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.core
+@pytest.mark.parametrize("name", ROWS)
+def test_rows_of_an_independent_program(name):
+    ring, (resistance, coning, crown), volumes, within = ROWS[name]
+    found = ring_heat(ring)
+    assert found.resistance == pytest.approx(resistance, rel=0.02)
+    assert found.coning_per_watt == pytest.approx(coning, rel=within)
+    # Its crown is the height of what finite elements bow, a parabola the one that ours is.
+    assert found.crown_per_watt == pytest.approx(crown, rel=0.08)
+    # Another division of radii into cells; its time constant is over the resistance of the cells alone.
+    assert (found.resistance, found.coning_per_watt) == pytest.approx(volumes[:2], rel=5e-3)
+    assert found.time_constant == pytest.approx(volumes[2], rel=0.02)
+
+
+@pytest.mark.parametrize(
+    "o_ring, elements, shell", [(12, -4.598e-5, -4.734e-5), (16, -2.407e-5, -2.598e-5), (20, 9.37e-6, 9.33e-6)]
+)
+def test_pressure_and_where_the_o_ring_sits(o_ring, elements, shell):
+    """One bar turns the ring of carbon by +9 to -46 urad, by the place of its O-ring (independent program)."""
+    ring = replace(ROWS["carbon, O-ring"][0], wetted_length=1e-3 * o_ring)
+    balance = np.sqrt(0.034**2 - 0.8 * (0.034**2 - 0.0305**2))
+    found = pressure_coning(ring, 1e5, balance)
+    assert found == pytest.approx(elements, rel=0.1)
+    assert found == pytest.approx(shell, rel=0.02)
+
+
+# --- against finite elements -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ROWS)
+def test_the_finite_elements_are_those_of_the_rows(name):
+    """Two programs that share nothing agree to the digits that the other one prints."""
+    ring, expected, *_ = ROWS[name]
+    found = Ring(ring).heated()
+    assert (found.resistance, found.coning) == pytest.approx(expected[:2], rel=1e-3)
+    assert found.crown == pytest.approx(expected[2], rel=0.02)
+
+
+OTHERS = {
+    "tungsten carbide": body(20, 26, 9, MATERIALS["tungsten carbide"]._asdict(), 9000.0, (22, 25), 7, "bore"),
+    "lead bronze": body(33, 43, 15, MATERIALS["lead bronze"]._asdict(), 1400.0, (35, 40), 10, "both"),
+    "alumina": body(45, 57, 12, MATERIALS["alumina"]._asdict(), 6000.0, (46, 51), 9),
+}
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_other_rings_against_finite_elements(name):
+    ring = OTHERS[name]
+    found, expected = ring_heat(ring), Ring(ring).heated()
+    assert found.resistance == pytest.approx(expected.resistance, rel=0.015)
+    # Of the turn of a ring whose face alone is warm; in the bore, where parts of it cancel, 9 % of what is left.
+    whole = ring.expansion * expected.resistance * ring.mean_radius / ring.length
+    assert found.coning_per_watt == pytest.approx(expected.coning, abs=0.025 * whole)
+    assert found.time_constant == pytest.approx(expected.time_constant, rel=0.01)
+    assert found.hottest * found.resistance == pytest.approx(expected.hottest, rel=0.02)
+    assert found.crown_per_watt == pytest.approx(expected.crown, rel=0.15)
+    assert found.at_o_ring * found.resistance == pytest.approx(expected.at_o_ring, rel=0.05)
+
+
+@pytest.mark.parametrize("wet", ["outer", "bore"])
+def test_pressure_against_finite_elements(wet):
+    """All that presses on a ring that is half as long again as it is wide, its O-ring at two thirds."""
+    ring = body(29, 36, 11, SILICON_CARBIDE, 5000.0, (30.5, 34), 7, wet)
+    inner, outer, inside = ring.face_inner_radius, ring.face_outer_radius, wet == "bore"
+    share = 0.8 * (outer**2 - inner**2)
+    balance = np.sqrt(inner**2 + share) if inside else np.sqrt(outer**2 - share)
+    edge = ring.inner_radius if inside else ring.outer_radius
+    ends = sorted((inner if inside else outer, edge)), (inner, outer), sorted((balance, edge))
+    beside, band, back = (("face", *ends[0]), ("face", *ends[1]), ("back", *ends[2]))
+
+    def even(r):
+        return 1.0 + 0 * r
+
+    def film(r):
+        return (outer - r if inside else r - inner) / (outer - inner)
+
+    loads = [(wet, 0.0, ring.wetted_length, even), (*beside, even), (*band, film), (*back, even)]
+    drawn = Ring(ring, balance=balance)
+    force = {"face": 1, "back": -1}
+    left = -sum(force.get(load[0], 0) * drawn.push(*load).sum() for load in loads) / drawn.push(*band, even).sum()
+    expected = drawn.pressed([*loads, (*band, lambda r: left + 0 * r)])
+    assert pressure_coning(ring, 1.0, balance) == pytest.approx(expected, rel=0.1)
+
+
+@pytest.mark.parametrize("material, length", [(CARBON, 7), (SILICON_CARBIDE, 14), (STEEL, 10)])
+def test_spin_against_finite_elements(material, length):
+    ring = body(29, 36, length, material, 5000.0, (30.5, 34))
+    sizes = ring.inner_radius, ring.outer_radius, ring.length, ring.modulus, ring.poisson, ring.density
+    assert coning_per_speed_squared(*sizes) == pytest.approx(Ring(ring).spun(), rel=0.05)
+
+
+# --- against the fin ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name, coning", [("carbon, face is section", 6.3251e-6), ("steel, wet bore", 1.2557e-5)])
+def test_the_fin_on_a_section_that_gives(name, coning):
+    """The fin's temperatures in the beam: its closed form as the independent program has it."""
+    ring = ROWS[name][0]
+    wet, dry = ring.outer_radius, ring.inner_radius
+    wet, dry, sign = (dry, wet, -1) if ring.wet == "bore" else (wet, dry, 1)
+    k, width, both = ring.conductivity, ring.width, wet**2 - dry**2
+    log, scale = np.log(wet / dry), 2 * wet / abs(both)
+    effective = 1 / (1 / ring.convection + scale / k * abs(both / 8 - dry**2 / 4 + dry**4 / (2 * both) * log))
+    m = np.sqrt(effective * 2 * wet / (k * abs(both)))
+    x = np.linspace(0.0, ring.length, 800)
+    rise = np.cosh(m * (ring.length - x)) / np.sinh(m * ring.length) / (k * np.pi * abs(both) * m)
+    gradient = -sign * effective * rise * scale * abs(both / 4 - dry**2 / 2 * log) / (k * width)
+    by_mean, by_gradient = coning_by_temperature(ring, x)
+    assert by_mean @ rise + by_gradient @ gradient == pytest.approx(coning, rel=1e-4)
+    assert rise[0] == pytest.approx(ROWS[name][1][0], rel=0.01)
+
+
+@pytest.mark.parametrize("wet", ["outer", "bore"])
+@pytest.mark.parametrize("slender", [0.5, 1.0, 1.6])
+@pytest.mark.parametrize("biot", [0.06, 0.5, 4.0])
+def test_fin_and_finite_volumes(biot, slender, wet):
+    """A face that is the whole section: the two agree where the fin holds."""
+    ring = body(30, 36, 6 * slender, STEEL, biot * STEEL["conductivity"] / 6e-3, wet=wet)
+    numbers = {key: value for key, value in STEEL.items() if key != "modulus"}
+    sizes = ring.inner_radius, ring.outer_radius, ring.length
+    fin, found = ring_fin(*sizes, convection=ring.convection, wet_bore=wet == "bore", **numbers), ring_heat(ring)
+    assert found.resistance == pytest.approx(fin.resistance, rel=0.05)
+    assert found.time_constant == pytest.approx(fin.time_constant, rel=0.08)
+    # Of the larger of the two parts, which oppose each other in the bore.
+    part = ring.expansion * fin.resistance * ring.mean_radius / ring.length
+    assert abs(found.coning_per_watt - fin.coning_per_watt) < 0.06 * max(abs(fin.coning_per_watt), 0.4 * part)
+
+
+# --- in time, and what must hold of any ring ---------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ROWS)
+def test_six_states_for_the_whole_grid_in_time(name):
+    """Face temperature and coning after a step of heat, against all states of the grid, within 3 % of their end."""
+    ring = ROWS[name][0]
+    grid, found = conduction(ring), ring_heat(ring)
+    root = np.sqrt(grid.capacity)
+    rates, modes = eigh(dense(grid.matrix) / np.outer(root, root))
+    modes /= root[:, None]
+    time = found.time_constant * np.geomspace(1e-4, 50.0, 200)
+    step = (1 - np.exp(-np.outer(time, rates))) / rates * (grid.flux @ modes)
+    rise = step @ (grid.flux @ modes) + grid.immediate_resistance
+    coning = step @ (grid.coning @ modes) + grid.immediate_coning
+    share = 1 - np.exp(-time[:, None] / found.time_constants)
+    assert np.all(found.time_constants > 0) and len(found.time_constants) == 6
+    assert np.abs(share @ found.resistances + found.immediate_resistance - rise).max() < 0.03 * found.resistance
+    assert np.abs(share @ found.conings + found.immediate_coning - coning).max() < 0.03 * np.abs(coning).max()
+    # What the six and the immediate part add up to is the steady state, and their first moment the time constant.
+    moment = np.sum(found.resistances * found.time_constants) / found.resistance
+    assert moment == pytest.approx(found.time_constant, rel=1e-6)
+
+
+def dense(bands):
+    """The symmetric matrix of lower bands."""
+    size = bands.shape[1]
+    matrix = np.diag(bands[0])
+    for off in (1, RADIAL):
+        at = np.arange(size - off)
+        matrix[at + off, at] = matrix[at, at + off] = bands[off, : size - off]
+    return matrix
+
+
+@pytest.mark.parametrize("name", [*ROWS, *OTHERS])
+def test_what_goes_in_goes_out(name):
+    """All heat of the band is convected; in a ring of one temperature none flows but to the liquid."""
+    grid = conduction(OTHERS[name] if name in OTHERS else ROWS[name][0])
+    assert grid.convected @ grid.answer(grid.flux) == pytest.approx(1.0, rel=1e-10)
+    assert dense(grid.matrix).sum(axis=0) == pytest.approx(grid.convected, abs=1e-9 * grid.matrix[0].max())
+
+
+def test_free_strains_cone_as_they_must():
+    """An even temperature cones nothing; one that grows evenly with depth cones -alpha r_m per K/m, without stress."""
+    ring = ROWS["carbon, O-ring"][0]
+    depths = ring.length * np.linspace(0.0, 1.0, 41) ** 1.5
+    by_mean, _ = coning_by_temperature(ring, depths)
+    free = ring.expansion * ring.mean_radius
+    assert abs(np.sum(by_mean)) < 1e-7 * free / ring.length
+    assert by_mean @ depths == pytest.approx(-free, rel=1e-7)
+
+
+def test_a_mirrored_section_bows_the_other_way():
+    """Inside for outside: bow and gradient change their sign, the mean does not."""
+    ring = body(29, 36, 20, CARBON, 5000.0, (30.5, 34))
+    mirrored = replace(ring, face_inner_radius=0.031, face_outer_radius=0.0345)
+    edges = 1e-3 * np.array([29, 29.7, 30.5, 31.3, 32, 34, 35.1, 36])
+    flux = np.array([0.0, 0.0, 1.0, 3.0, 2.0, -1.0, -2.0])
+    one, other = coning_by_bow(ring, edges), coning_by_bow(mirrored, 0.065 - edges[::-1])
+    assert one @ flux == pytest.approx(-(other @ flux[::-1]), rel=1e-9)
+    there, back = section_weights(ring, edges), section_weights(mirrored, 0.065 - edges[::-1])
+    assert there[0] == pytest.approx(back[0][::-1]) and there[1] == pytest.approx(-back[1][::-1])
+
+
+def test_hardly_and_well_cooled_rings():
+    """Of a ring hardly cooled, which has one temperature, R = 1/(h A) and tau = C R; of one perfectly cooled R
+    is what its section resists."""
+    ring = ROWS["carbon, O-ring"][0]
+    found = ring_heat(replace(ring, convection=1e-3))
+    wetted = 2 * np.pi * 0.036 * 0.012 + np.pi * (0.036**2 - 0.034**2)
+    capacity = 1800 * 750 * np.pi * (0.036**2 - 0.029**2) * 0.02
+    assert found.resistance == pytest.approx(1 / (1e-3 * wetted), rel=1e-3)
+    assert found.time_constant == pytest.approx(capacity / (1e-3 * wetted), rel=1e-3)
+    assert found.hottest == pytest.approx(1.0, abs=1e-3) and found.at_o_ring == pytest.approx(1.0, abs=1e-3)
+    numbers = {key: value for key, value in CARBON.items() if key != "modulus"}
+    perfect = ring_heat(body(30, 36, 6, CARBON, 1e12))
+    assert perfect.resistance == pytest.approx(
+        ring_fin(0.03, 0.036, 0.006, convection=1e12, **numbers).resistance, 0.06
+    )
+
+
+def test_a_thin_ring():
+    """Of a ring a hundred times larger than wide the fin is right to what a grid of 24 by 32 cells errs."""
+    numbers = {key: value for key, value in STEEL.items() if key != "modulus"}
+    fin, found = ring_fin(0.6, 0.606, 0.012, convection=500.0, **numbers), ring_heat(body(600, 606, 12, STEEL, 500.0))
+    assert found.resistance == pytest.approx(fin.resistance, rel=5e-4)
+    assert found.coning_per_watt == pytest.approx(fin.coning_per_watt, rel=2e-3)
+    assert found.time_constant == pytest.approx(fin.time_constant, rel=3e-3)
+
+
+def test_the_back_of_a_long_ring_does_not_matter():
+    long, longer = (ring_heat(body(30, 36, length, CARBON, 8000.0, (31, 34))) for length in (40, 60))
+    assert longer.resistance == pytest.approx(long.resistance, rel=0.02)
+    assert longer.coning_per_watt == pytest.approx(long.coning_per_watt, rel=0.02)
+    assert long.at_o_ring < 1e-3
+
+
+def test_a_sliver_beside_the_band_is_part_of_it():
+    whole, sliver = (ring_heat(body(30, 36, 8, STEEL, 8000.0, (30 + off, 36 - off))) for off in (0, 1e-9))
+    assert sliver.resistance == pytest.approx(whole.resistance, rel=1e-6)
+    assert sliver.coning_per_watt == pytest.approx(whole.coning_per_watt, rel=1e-6)

@@ -1,0 +1,75 @@
+"""Warm-up and Stribeck curve: the sheet's start of a pump seal, the end of a course, energy, and the states of speeds."""
+
+import numpy as np
+import pytest
+from scipy.interpolate import CubicSpline
+
+import sealdyn
+from sealdyn.dynamics.warm_state import Warming, warming
+
+RINGS = {
+    "stator": {"resistance": 0.3694, "coning_per_watt": 2.5756e-6, "time_constant": 1.169},
+    "rotor": {"resistance": 0.04777, "coning_per_watt": 2.494e-7, "time_constant": 0.517},
+}
+# Made by an independent program without the squeeze of the film: time (s), rise (K), coning (rad), clearance (m), heat.
+START = (
+    (0.5, 1.5288, 6.8641e-5, 1.9023e-7, 115.68),
+    (1.0, 5.0939, 1.1211e-4, 1.8563e-7, 233.14),
+    (2.0, 7.8626, 1.4587e-4, 1.8419e-7, 193.87),
+    (5.0, 8.0856, 1.4859e-4, 1.8413e-7, 191.16),
+)
+
+
+@pytest.fixture
+def pump():
+    scenario = sealdyn.example("pump_seal")
+    return scenario.with_({"film.heat": RINGS})
+
+
+@pytest.mark.core
+def test_start_of_the_pump_is_that_of_an_independent_program(pump, monkeypatch):
+    squeezed = Warming.damping
+    monkeypatch.setattr(Warming, "damping", lambda self, *at: 1e-2 * squeezed(self, *at))
+    found = sealdyn.run_study("warm-up", pump, flags={"start": 1.0, "hold": 4.0})
+    for time, *row in START:
+        here = [float(CubicSpline(found["time"], found[key])(time)) for key in ("rise", "coning", "clearance", "power")]
+        assert here == pytest.approx(row, rel=1e-3), time
+    assert found["energy_residual"] < 1e-9
+
+
+def test_squeeze_of_the_film_delays_the_start(pump):
+    found = sealdyn.run_study("warm-up", pump, flags={"start": 1.0, "hold": 1.0})
+    rise = float(np.interp(0.5, found["time"], found["rise"]))
+    assert 0.97 * START[0][1] < rise < 0.999 * START[0][1]
+
+
+@pytest.mark.parametrize("rings", [RINGS, None])
+def test_course_ends_in_the_warm_state_and_cools_to_the_cold_one(pump, rings):
+    scenario = pump if rings else sealdyn.example("pump_seal")
+    found = sealdyn.run_study("warm-up", scenario, flags={"hold": 120.0, "stop": 1.0, "rest": 200.0})
+    state = warming(scenario.scene).working()
+    warm = int(np.searchsorted(found["time"], 121.0))
+    for key in ("rise", "coning", "clearance", "power"):
+        assert found[key][warm] == pytest.approx(getattr(state, key), rel=2e-3), key
+    assert abs(found["rise"][-1]) < 0.01 * state.rise
+    assert found["clearance"][-1] == pytest.approx(found["clearance"][0], rel=1e-2)
+
+
+def test_stribeck_has_the_warm_state_of_each_speed(pump):
+    found = sealdyn.run_study("stribeck", pump, flags={"points": 3})
+    for k, speed in enumerate(found["speed"]):
+        state = warming(pump.with_(shaft__speed=speed).scene).working()
+        assert found["temperature"][k] == pytest.approx(state.rise, rel=1e-6)
+        assert found["torque"][k] == pytest.approx(state.torque, rel=1e-6)
+        assert found["leakage"][k] == pytest.approx(state.leakage, rel=1e-6)
+    # Unheated faces keep their clearance; their viscous torque grows with the speed.
+    assert np.ptp(found["unheated"]["clearance"]) < 1e-9 * found["unheated"]["clearance"][0]
+    assert np.all(np.diff(found["unheated"]["torque"]) > 0.0)
+
+
+def test_warm_up_needs_time_constants(pump):
+    bare = {name: {**ring, "time_constant": None} for name, ring in RINGS.items()}
+    cold = pump.with_({"film.heat": {name: {k: v for k, v in ring.items() if v} for name, ring in bare.items()}})
+    with pytest.raises(sealdyn.ScenarioError) as error:
+        sealdyn.run_study("warm-up", cold)
+    assert error.value.key == "film.heat.stator.time_constant"
