@@ -88,26 +88,26 @@ class Ring:
         """One watt even over the band: resistance (K/W), time_constant (s), hottest (K/W), at_o_ring (K/W, where the
         wetted side ends), coning (rad/W) and crown (m/W)."""
         ring, mesh = self.ring, self.mesh
-        slope = np.einsum("eap,ebp,ep->eab", mesh.by_r, mesh.by_r, mesh.weight)
-        slope += np.einsum("eap,ebp,ep->eab", mesh.by_x, mesh.by_x, mesh.weight)
-        matrix = mesh.matrix(ring.conductivity * slope, mesh.nodes, mesh.size)
-        for side, start, end in self._wetted():
-            nodes, _, weights = mesh.edge(side, start, end)
-            element = ring.convection * np.einsum("ap,bp,ep->eab", SHAPES, SHAPES, weights)
-            matrix = matrix + mesh.matrix(element, nodes, mesh.size)
         store = np.einsum("ap,bp,ep->eab", mesh.values, mesh.values, mesh.weight)
         store = mesh.matrix(ring.density * ring.specific_heat * store, mesh.nodes, mesh.size)
         flux = self.push("face", ring.face_inner_radius, ring.face_outer_radius, lambda r: 1.0 + 0 * r)
         flux /= np.sum(flux)
-        steady = splu(matrix).solve(flux)
+        steady = self._cooled().solve(flux)
         resistance = flux @ steady
-        strain = np.einsum("ap,ea->ep", mesh.values, steady[mesh.nodes]) * ring.expansion
-        coning, crown = self._shape(self._thermal_load(strain))
-        on_face = steady[: mesh.across][self._band()]
+        coning, crown = self._shape(self._displaced(self._thermal_load(steady)))
         return SimpleNamespace(
-            resistance=resistance, time_constant=steady @ (store @ steady) / resistance, hottest=np.max(on_face),
-            at_o_ring=steady[self.mesh.edge(*self._wetted()[0])[0][-1, -1]], coning=coning, crown=crown,
+            resistance=resistance, time_constant=steady @ (store @ steady) / resistance, coning=coning, crown=crown,
+            hottest=np.max(steady[: mesh.across][self.band()]),
+            at_o_ring=steady[self.mesh.edge(*self._wetted()[0])[0][-1, -1]],
         )  # fmt: skip
+
+    def answers(self):
+        """What heat (W) at each node of the band does to the band: rises (K/W) and displacements into the ring (m/W),
+        both (nodes, nodes of the heat), and the nodes' radii (m)."""
+        at = np.flatnonzero(self.band())
+        rises = self._cooled().solve(np.eye(self.mesh.size)[:, at])
+        moved = self._displaced(np.stack([self._thermal_load(rise) for rise in rises.T], axis=1))
+        return rises[at], moved[2 * at + 1], self._face_radii()[at]
 
     def pressed(self, loads):
         """Coning (rad) by pressures (Pa) over the coordinate, `loads` of (side, from, to, function), in balance along
@@ -118,7 +118,7 @@ class Ring:
             inward = 1.0 if side in ("face", "bore") else -1.0
             total[part::2] += inward * self.push(side, start, end, pressure)
         assert abs(np.sum(total[1::2])) < 1e-6 * np.sum(np.abs(total[1::2]))
-        return self._shape(total)[0]
+        return self._shape(self._displaced(total))[0]
 
     def spun(self):
         """Coning (rad s^2) over the square of the speed (rad/s)."""
@@ -126,7 +126,19 @@ class Ring:
         element = np.einsum("ap,ep->ea", mesh.values, self.ring.density * mesh.r * mesh.weight)
         load = np.zeros(2 * mesh.size)
         np.add.at(load, 2 * mesh.nodes, element)
-        return self._shape(load)[0]
+        return self._shape(self._displaced(load))[0]
+
+    def _cooled(self):
+        """The factors of the matrix (W/K) of conduction and convection."""
+        ring, mesh = self.ring, self.mesh
+        slope = np.einsum("eap,ebp,ep->eab", mesh.by_r, mesh.by_r, mesh.weight)
+        slope += np.einsum("eap,ebp,ep->eab", mesh.by_x, mesh.by_x, mesh.weight)
+        matrix = mesh.matrix(ring.conductivity * slope, mesh.nodes, mesh.size)
+        for side, start, end in self._wetted():
+            nodes, _, weights = mesh.edge(side, start, end)
+            element = ring.convection * np.einsum("ap,bp,ep->eab", SHAPES, SHAPES, weights)
+            matrix = matrix + mesh.matrix(element, nodes, mesh.size)
+        return splu(matrix)
 
     def _wetted(self):
         ring, found = self.ring, []
@@ -160,8 +172,9 @@ class Ring:
         law[3, 3] = (1 - 2 * nu) / 2
         return e / ((1 + nu) * (1 - 2 * nu)) * law
 
-    def _thermal_load(self, strain):
-        """Loads (2 nodes,) of a free thermal strain at the points (elements, points)."""
+    def _thermal_load(self, temperature):
+        """Loads (2 nodes,) of the free strain by temperatures (nodes,)."""
+        strain = np.einsum("ap,ea->ep", self.mesh.values, temperature[self.mesh.nodes]) * self.ring.expansion
         stress = self._law() @ np.array([1.0, 1.0, 1.0, 0.0])
         element = np.einsum("eidp,i,ep->ed", self._strains(), stress, strain * self.mesh.weight)
         load = np.zeros(2 * self.mesh.size)
@@ -172,21 +185,28 @@ class Ring:
         nodes = self.mesh.nodes
         return np.stack([2 * nodes, 2 * nodes + 1], axis=2).reshape(len(nodes), 18)
 
-    def _band(self):
-        """Of the nodes of the face, those of the band."""
+    def _face_radii(self):
         radii = self.mesh.radii
-        at = np.interp(np.arange(self.mesh.across) / 2, np.arange(len(radii)), radii)
+        return np.interp(np.arange(self.mesh.across) / 2, np.arange(len(radii)), radii)
+
+    def band(self):
+        """Of the nodes of the face, those of the band."""
+        at = self._face_radii()
         return (at > self.ring.face_inner_radius - 1e-9) & (at < self.ring.face_outer_radius + 1e-9)
 
-    def _shape(self, load):
-        """Slope (rad) of the line through the band that deviates least, and how far (m) its edges are beyond it."""
-        mesh, ring, strains = self.mesh, self.ring, self._strains()
+    def _displaced(self, loads):
+        """Displacements (2 nodes, ...) under loads; one node stays where it is along the shaft."""
+        mesh, strains = self.mesh, self._strains()
         element = np.einsum("eidp,ij,ejcp,ep->edc", strains, self._law(), strains, mesh.weight, optimize=True)
         matrix = mesh.matrix(element, self._dofs(), 2 * mesh.size)
-        # One node stays where it is along the shaft.
         free = np.delete(np.arange(2 * mesh.size), 2 * (mesh.size - 1) + 1)
-        moved = np.zeros(2 * mesh.size)
-        moved[free] = splu(matrix[free][:, free]).solve(load[free])
+        moved = np.zeros(loads.shape)
+        moved[free] = splu(matrix[free][:, free]).solve(loads[free])
+        return moved
+
+    def _shape(self, moved):
+        """Slope (rad) of the line through the band that deviates least, and how far (m) its edges are beyond it."""
+        mesh, ring = self.mesh, self.ring
         nodes, points, around = mesh.edge("face", ring.face_inner_radius, ring.face_outer_radius)
         height, weights = np.einsum("ap,ea->ep", SHAPES, moved[2 * nodes + 1]), around / points
         middle, mean = np.average(points, weights=weights), np.average(height, weights=weights)

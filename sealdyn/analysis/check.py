@@ -4,7 +4,7 @@ from ..radial_seals.followers import closed_form_sentences
 from ..scenario.reader import Scenario
 from ..scene.radial import RadialScene
 from ..simulation.film_error import reynolds_comparison
-from ..simulation.heat import heat_of
+from ..simulation.heat import heat_cautions, heat_of
 from ..simulation.plausibility import scene_cautions, size_of, unit_warnings
 from ..simulation.result import plain
 from ..simulation.selection import prepare_run
@@ -33,12 +33,18 @@ def checked(scenario: Scenario) -> dict:
         "model": plain(model_chosen(scenario, run, plan)),
         "clearance": run.model.clearance,
         "equilibria": [vars(e) for e in run.model.interface.equilibria],
-        "warnings": [caution.sentence for caution in (*run.cautions, *scene_cautions(scenario, run.model))],
+        "warnings": [
+            caution.sentence for caution in (*run.cautions, *scene_cautions(scenario, run.model), *_of_heat(run.model))
+        ],
         "heat": plain(heat_of(run.model.given, run.model.heat)),
         "design_rules": design_rules.findings(scenario, run.model),
         "beside_reynolds": reynolds_comparison(run),
         "size": {key: getattr(size, key) for key in ("turns", "rows", "bytes", "seconds")},
     }
+
+
+def _of_heat(model) -> list:
+    return [] if model.heat is None else heat_cautions(model.given, model.heat)
 
 
 def rules_of(scenario: Scenario) -> list[dict]:

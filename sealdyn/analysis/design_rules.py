@@ -239,7 +239,7 @@ def _heat(seal: Seal, limit) -> Finding:
     if film <= 0.0:
         # Rough faces may carry a cone that closes their mean planes.
         return other_seals(f"the mean film is {1e6 * film:.4g} um: the asperities carry the faces")
-    full = initially(viscosity_of(seal.scene.film)) * seal.face_area * speed**2 / film
+    full = initially(viscosity_of(seal.model.scene.film)) * seal.face_area * speed**2 / film
     dry = [f * seal.face_load * speed for f in limit]
     rough = seal.asperity_heat
     sentence = f"heat {full:.4g} W of a full film of {1e6 * film:.4g} um"
@@ -356,7 +356,7 @@ def _gear_resonance(seal: Seal, limit) -> Finding:
 
 def _seal_temperature(seal: Seal, limit) -> Finding:
     """Pass up to the material's temperature; a note where the guide's own numbers leave it open."""
-    material, temperature = seal.application.secondary_seal_material, seal.highest_temperature
+    material, temperature = seal.application.secondary_seal_material, seal.o_ring_temperature
     if material is None:
         return missing_keys("application.secondary_seal_material")
     if material not in limit:
@@ -376,7 +376,7 @@ def _coking(seal: Seal, limit) -> Finding:
     """Pass up to 505 K."""
     if seal.scene.film.gas is not None:
         return other_seals("the film is a gas")
-    temperature = seal.highest_temperature
+    temperature = seal.face_temperature
     if temperature is None:
         return missing_keys("application.highest_temperature")
     return limit_finding(f"{temperature:.4g} K, lubricants coke near {limit:g} K", temperature, most=limit)

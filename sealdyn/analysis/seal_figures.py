@@ -175,6 +175,25 @@ class Seal:
         given = self.application.highest_temperature, *points(self.scene.film.temperature)
         return max((t for t in given if t is not None), default=None)
 
+    @property
+    def face_temperature(self) -> float | None:
+        """Highest temperature (K) of the film: in service, or of the warm faces; None where neither is known."""
+        heat = self.model.heat
+        warm = None if heat is None else initially(self.scene.film.temperature) + heat.rise
+        return max((t for t in (self.highest_temperature, warm) if t is not None), default=None)
+
+    @property
+    def o_ring_temperature(self) -> float | None:
+        """Highest temperature (K) at the secondary seal: that of the fluid, or of a ring where its O-ring sits, which
+        is known of one from its drawing; None where neither is known."""
+        fluid, heat = self.highest_temperature, self.model.heat
+        if heat is None or fluid is None:
+            return fluid
+        from ..dynamics.warm_state import warming
+
+        shares = [ring.at_o_ring or 0.0 for ring in warming(self.model.given).rings.values()]
+        return max(fluid, initially(self.scene.film.temperature) + max(shares) * heat.rise)
+
 
 def _largest_difference(one, other) -> float:
     """Largest difference of two numbers or functions of time, in their unit."""

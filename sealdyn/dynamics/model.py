@@ -18,7 +18,6 @@ from .segments import Segment
 from .stick_slip import CAPTURE, FADE, ONSET_SPEED
 from .swept_motion import check_begins, check_covers, sweep_breaks
 from .unknowns import Unknowns
-from .warm_state import at_work
 
 
 class Model:
@@ -38,7 +37,12 @@ class Model:
 
     def __init__(self, scene: Scene, accuracy: float = 1e-6, observed=None, film=None, film_error=None):
         self.given, made = scene, None
-        scene, self.heat = at_work(scene)
+        self.heat = None
+        if scene.film.liquid is not None:
+            # Loaded only where temperature counts.
+            from .warm_state import at_work
+
+            scene, self.heat = at_work(scene)
         self._warm = {} if self.heat is None else {float(initially(scene.shaft.speed)): self}
         if scene.stator.elastic is not None:
             from .elastic_ring import at_rest
@@ -178,6 +182,8 @@ class Model:
         NoWarmState."""
         if self.heat is None:
             return self
+        from .warm_state import at_work
+
         if speed not in self._warm:
             beside = self._warm[min(self._warm, key=lambda w: abs(w - speed))].heat
             scene, heat = at_work(self.given, speed, beside)

@@ -32,6 +32,7 @@ from ..scene.scene import Closing, SceneError
 from ..status import Status
 from .equilibrium import ClosingForce, crossing, equilibria, settle
 from .interface import Asked, Interface, flow_at_rest, opening_law, rest_state
+from .intervals import largest_value
 
 # Rises that are looked at between the first, as a share of the last, and the end of the liquid's table.
 SCANNED, FIRST = 60, 1e-4
@@ -42,18 +43,28 @@ TINY = 1e-9
 # Halvings towards the rise at which a film holds no more.
 HALVINGS = 30
 # From rise to rise in looking for the balance of a speed nearby: first, and at most.
-WIDER, WIDEST = 1.1, 2.0
+WIDER, WIDEST = 1.1, 1.5
 # From clearance to clearance in following one, and how far it is followed from rise to rise.
 STRIDE, REACH = 1.03, 60
 
 
 @dataclass(frozen=True)
-class RingHeat:
-    """A ring's `resistance` (K/W), `coning_per_watt` (rad/W) and `time_constant` (s, None where it is not known)."""
+class HeatedBody:
+    """A ring's `resistance` (K/W), `coning_per_watt` (rad/W) and `time_constant` (s, None where it is not known); of
+    one from its drawing also its `convection` (W/(m^2 K)), the Reynolds number of that by its speed and whether it is
+    `extrapolated`, its hottest place and the O-ring's over the face's mean rise, h w/k, and length over width."""
 
     resistance: float
     coning_per_watt: float
     time_constant: float | None
+    convection: float | None = None
+    reynolds: float | None = None
+    extrapolated: bool = False
+    hottest: float | None = None
+    at_o_ring: float | None = None
+    biot: float | None = None
+    narrow: bool = False
+    long: bool = False
 
 
 @dataclass(frozen=True)
@@ -82,12 +93,12 @@ class WarmState:
 
 
 class Warming:
-    """A scene with `[film.heat]` at the conditions of its start: `rings` (RingHeat by name), what it is at any rise,
+    """A scene with `[film.heat]` at the conditions of its start: `rings` (HeatedBody by name), what it is at any rise,
     and its warm states.  Raises SceneError where no closing force is known."""
 
-    def __init__(self, scene):
+    def __init__(self, scene, cooling: float = 1.0):
         self.law, self.said = _closing(_unheated(scene))
-        self.rings = {name: _numbers(scene, name, ring) for name, ring in scene.film.heat.rings.items()}
+        self.rings = {name: heated_body(scene, name, cooling) for name in scene.film.heat.rings}
         self.conductance = sum(1.0 / ring.resistance for ring in self.rings.values())
         self.coning_per_kelvin = sum(ring.coning_per_watt / ring.resistance for ring in self.rings.values())
         known = all(ring.time_constant is not None for ring in self.rings.values())
@@ -98,7 +109,7 @@ class Warming:
     def under(self, scene) -> "Warming":
         """The same rings and closing force law at the conditions of another scene: speed, pressures, temperature."""
         other = copy(self)
-        for found in ("cold_state", "scanned", "states"):
+        for found in ("cold_state", "scanned", "states", "_coolest"):
             vars(other).pop(found, None)
         other._begin(scene)
         return other
@@ -154,7 +165,8 @@ class Warming:
         flow_at_rest(interface, s)
         opening = float(s[FORCE] + (s[CONTACT_FORCE] if interface.contact is not None else 0.0))
         leakage = s[FLOW_INNER] * math.copysign(1.0, self.pressures[0] - self.pressures[1])
-        rubbed, sheared = (float(abs(s[k] * s[SPIN_DIFFERENCE])) for k in (CONTACT_TORQUE, TORQUE))
+        speed = self.scene.film.heat.friction * s[SPIN_DIFFERENCE]
+        rubbed, sheared = (float(abs(s[k] * speed)) for k in (CONTACT_TORQUE, TORQUE))
         spent = float(abs(leakage * (self.pressures[1] - self.pressures[0])))
         return WarmState(
             rise, clearance, initially(coned(scene).coning), initially(film.viscosity), sheared + rubbed + spent,
@@ -281,6 +293,14 @@ class Warming:
         nearby, whose stability is then that of the balance alone.  None if there is none."""
         if near is not None:
             return self._beside(near) if near.rise > 0.0 else None
+        return self._coolest
+
+    @cached_property
+    def _coolest(self) -> WarmState | None:
+        if self.cold_state is not None and (found := self._beside(self.cold_state)) is not None:
+            found = self._judged(found)
+            if found.stable:
+                return found
         return next((state for state in self.states if state.stable), None)
 
     def _beside(self, near: WarmState) -> WarmState | None:
@@ -296,13 +316,23 @@ class Warming:
             if self.surplus(low) < 0.0:
                 low, high = self._held(low.rise / wider, low.clearance), low
             else:
-                low, high = high, self._held(max(high.rise * wider, FIRST * self.highest), high.clearance)
+                low, high = high, self._warmer(high, max(high.rise * wider, FIRST * self.highest))
             wider = min(wider**2, WIDEST)
+        return None
+
+    def _warmer(self, state: WarmState, rise: float) -> WarmState | None:
+        """A state warmer than one, at a rise (K) or as near to it as there is a film and the liquid's table; None where
+        both end with the state."""
+        rise = min(rise, self.highest)
+        while rise - state.rise > FIRST * self.highest:
+            if (found := self._held(rise, state.clearance)) is not None:
+                return found
+            rise = 0.5 * (state.rise + rise)
         return None
 
     def _held(self, rise: float, near: float) -> WarmState | None:
         """The state at a rise (K) and the clearance that continues one `near` (m); None where no film holds."""
-        clearance = self.clearance(rise, near) if TINY * self.highest < rise < self.highest else None
+        clearance = self.clearance(rise, near) if TINY * self.highest < rise <= self.highest else None
         return None if clearance is None else self.state(rise, clearance)
 
     def why_none(self) -> str:
@@ -352,19 +382,49 @@ def _closing(cold) -> tuple[ClosingForce, str]:
     return law, "closing force from balance ratio and spring"
 
 
-def _numbers(scene, name: str, ring) -> RingHeat:
-    """What a HeatedRing of a scene takes of the heat."""
-    return RingHeat(ring.resistance, ring.coning_per_watt, ring.time_constant)
+def heated_body(scene, name: str, cooling: float = 1.0) -> HeatedBody:
+    """What the ring called `name` takes of the heat, as given or from its body; its convection times `cooling`."""
+    ring = getattr(scene.film.heat, name)
+    if ring.convection is None:
+        return HeatedBody(ring.resistance, ring.coning_per_watt, ring.time_constant)
+    from ..closed_form.ring_fin import ring_cooling
+    from ..faces.ring_coning import RingBody
+    from ..faces.ring_heat import ring_heat
+
+    film, body, liquid, cooled = scene.film, getattr(scene, name).body, liquid_of(scene.film), None
+    sealed, convection = initially(film.temperature), ring.convection
+    outer_is_high = initially(film.outer_pressure) >= initially(film.inner_pressure)
+    wet = ring.wet or ("outer" if outer_is_high else "bore")
+    if convection == "becker":
+        speeds = {"rotor": largest_value(scene.shaft.speed), "stator": largest_value(scene.stator.speed)}
+        turns = speeds[name] != 0.0
+        fluid = [float(of(sealed)) for of in (liquid.density_at, liquid.viscosity_at, liquid.specific_heat_at,
+                                              liquid.conductivity_at)]  # fmt: skip
+        diameter = 2.0 * (body.inner_radius if wet == "bore" else body.outer_radius)
+        cooled = ring_cooling(speeds[name] if turns else max(speeds.values()), diameter, fluid, turns)
+        if not cooled.value > 0.0:
+            raise SceneError(f"film.heat.{name}.convection", '"becker" of a shaft at rest', "a shaft that turns")
+        convection = cooled.value
+    convection *= cooling
+    length = ring.wetted_length or body.length
+    drawn = RingBody(body.inner_radius, body.outer_radius, body.length, film.inner_radius, film.outer_radius,
+                     **body.solid(), convection=convection, wetted_length=length, wet=wet)  # fmt: skip
+    found = ring_heat(drawn)
+    return HeatedBody(
+        found.resistance, found.coning_per_watt, found.time_constant, convection,
+        cooled and cooled.reynolds, bool(cooled and cooled.extrapolated), found.hottest, found.at_o_ring, found.biot,
+        film.outer_radius - film.inner_radius < drawn.width / 3.0, body.length > 4.0 * drawn.width,
+    )  # fmt: skip
 
 
 @lru_cache(maxsize=64)
-def _warming(asked) -> Warming:
-    return Warming(asked.scene)
+def _warming(asked, cooling) -> Warming:
+    return Warming(asked.scene, cooling)
 
 
-def warming(scene) -> Warming:
-    """The `Warming` of a scene with `[film.heat]`, remembered."""
-    return _warming(Asked(scene))
+def warming(scene, cooling: float = 1.0) -> Warming:
+    """The `Warming` of a scene with `[film.heat]`, remembered; convection that is reckoned or given times `cooling`."""
+    return _warming(Asked(scene), cooling)
 
 
 class NoWarmState(SceneError):

@@ -10,6 +10,7 @@ constant within 1 %, the hottest place within 1.2 %.
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from scipy.linalg import cho_solve_banded, cholesky_banded, eigh
@@ -80,6 +81,7 @@ class RingHeat:
     """Rest of the coning per watt, rad/W."""
 
 
+@lru_cache(maxsize=64)
 def ring_heat(body: RingBody) -> RingHeat:
     """The numbers of a ring, solved on the grid (some milliseconds)."""
     ring = conduction(body)

@@ -224,10 +224,16 @@ def _heat_lines(heat) -> Iterator[Line]:
     if cold["clearance"] is not None:
         before = ("unheated: clearance", cold["clearance"], "clearance")
         yield Line("", [before, ("leakage", cold["leakage"], "leakage"), ("friction", cold["power"], "power")])
+    if (ends := heat["interval"]) is not None and None not in ends["rise"]:
+        parts = [
+            ("half and twice the convection", ends["rise"][0], "temperature"),
+            ("and", ends["rise"][1], "temperature"),
+        ]
+        parts += [("coning", ends["coning"][0], "tilt"), ("and", ends["coning"][1], "tilt")]
+        yield Line("", parts, detail=True)
     taken = [(f"to the {name}", share, "share") for name, share in heat["shares"].items()]
-    yield Line(
-        "", [*taken, ("viscosity", heat["viscosity"], "viscosity"), ("loop gain", heat["loop_gain"], "1")], detail=True
-    )
+    more = [("viscosity", heat["viscosity"], "viscosity"), ("loop gain", heat["loop_gain"], "1")]
+    yield Line("", [*taken, *more], detail=True)
 
 
 def _contact_lines(contact, end: float) -> Iterator[Line]:

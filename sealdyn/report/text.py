@@ -94,11 +94,27 @@ def resolved_lines(found: dict) -> list[str]:
         what = "stiffness of film and asperities" if found["scene"]["contact"] else "film stiffness"
         where = f"{in_words('clearance', root['clearance'])}, {what} {in_words('axial_stiffness', root['stiffness'])}"
         out.append(f"# equilibrium clearance {where}, {kind}")
+    out += [f"# {line}" for line in _heated_lines(found["heat"])] if found.get("heat") else []
     out += [f"# {found['beside_reynolds']['said']}"] if found.get("beside_reynolds") else []
     if model["unused"]:
         out.append(f"# not used: {', '.join(model['unused'])}")
     out += [f"# WARNING {warning}" for warning in found.get("warnings", [])]
     return out + [f"# {line}" for line in _rule_lines(found["design_rules"])]
+
+
+def _heated_lines(heat) -> list[str]:
+    """What each ring takes of the heat, and how warm that makes the faces."""
+    out = []
+    for name, ring in heat["rings"].items():
+        parts = [f"{ring['resistance']:.4g} K/W", f"{1e6 * ring['coning_per_watt']:.4g} urad/W"]
+        parts += [f"settles in {in_words('time', ring['time_constant'])}"] if ring["time_constant"] else []
+        parts += [f"h {ring['convection']:.4g} W/(m^2 K)", f"h w/k {ring['biot']:.3g}"] if ring["convection"] else []
+        parts += [f"Re {ring['reynolds']:.3g}"] if ring["reynolds"] else []
+        out.append(f"heat into the {name}: {', '.join(parts)}")
+    ends = heat["interval"]
+    between = f" ({ends['rise'][1]:.4g} to {ends['rise'][0]:.4g})" if ends and None not in ends["rise"] else ""
+    coned = f"coning {in_words('tilt', heat['coning'])}, of it by heat {in_words('tilt', heat['coning_by_heat'])}"
+    return [*out, f"warm faces {heat['rise']:.4g}{between} K above the sealed liquid, {coned}"]
 
 
 def _rule_lines(rows) -> list[str]:

@@ -356,7 +356,9 @@ def unused(scene, given: set[str]) -> list[str]:
     leaves = []
     for name, ring in (("rotor", scene.rotor), ("stator", scene.stator)):
         if ring.support is None:
-            leaves += [f"{name}.{key}" for key in RIGID_LEAVES] + [f"initial.{name}.", f"{name}.secondary_seal."]
+            kept = ("body",) if scene.film.heat is not None and name in scene.film.heat.rings else ()
+            leaves += [f"{name}.{key}" for key in RIGID_LEAVES if key not in kept]
+            leaves += [f"initial.{name}.", f"{name}.secondary_seal."]
     if scene.rotor.support is None:
         leaves += ["rotor.misalignment", "rotor.misalignment_phase"]
     else:

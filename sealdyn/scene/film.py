@@ -44,6 +44,8 @@ from .gas import Gas, GasDam, GasName, GasReynolds
 from .heat import Heat
 from .liquid import Liquid, LiquidName
 
+PressureDifference = Annotated[float, Quantity("pressure difference", "Pa", '"10 bar"', (), 0,
+    usual=Usual(1e3, 1e9, "bar"))]  # fmt: skip
 ConingPerPressure = Annotated[float, Quantity("coning per pressure", "rad/Pa", '"-20 urad/bar"',
     usual=Usual(0.0, 1e-8, "urad/bar"))]  # fmt: skip
 
@@ -300,7 +302,7 @@ class Film:
     """Temperature at which the coning is that of `coning`."""
     coning_per_pressure: ConingPerPressure = 0.0
     """What each pascal of the sealed pressure above `coning_reference_pressure` adds to it."""
-    coning_reference_pressure: Pressure | None = None
+    coning_reference_pressure: PressureDifference | None = None
     """Difference of the pressures at which the coning is that of `coning`."""
     density: Density = 1000.0
     """Of a liquid: for mass flow, heating of the leakage, Reynolds numbers and inertia."""

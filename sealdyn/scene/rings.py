@@ -3,7 +3,7 @@ drawing, a ring that bends, and the friction of its O-ring."""
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
 from ..units import (
     Angle,
@@ -16,17 +16,24 @@ from ..units import (
     Length,
     LineForce,
     Mass,
+    Quantity,
     Radius,
+    SpecificHeat,
     Speed,
     Stiffness,
+    Stress,
     Tilt,
     TiltDamping,
     TiltStiffness,
+    Usual,
     Varying,
     Velocity,
 )
 from .contact import Waviness
+from .liquid import ThermalConductivity
 
+Expansion = Annotated[float, Quantity("thermal expansion", "1/K", '"4.5e-6 1/K"', (), 0, True,
+    usual=Usual(1e-7, 1e-3, "um/(m*K)"))]  # fmt: skip
 # Tilt (rad) up to which the equations hold, which are linear in tilts: gap and pressure are then off by 2e-4, half its
 # square, and no seal runs so far off.
 SMALL_TILT = 0.02
@@ -94,6 +101,22 @@ class Body:
     carbides), 3870, 7850 (steel), 7720, 8027 and 9000 kg/m^3; or give `density`."""
     density: Density | None = None
     """In place of `material`."""
+    conductivity: ThermalConductivity | None = None
+    """In place of the material's, as those below: for `film.heat` only."""
+    expansion: Expansion | None = None
+    """Coefficient of linear thermal expansion."""
+    modulus: Stress | None = None
+    """Young's modulus."""
+    poisson: float | None = None
+    """Poisson's ratio."""
+    specific_heat: SpecificHeat | None = None
+    """Of the ring."""
+
+    def solid(self) -> dict[str, float | None]:
+        """The numbers of its material by the names of `Solid`, its own first; None of what nobody gives."""
+        known = MATERIALS[self.material]._asdict() if self.material is not None else {}
+        own = {name: getattr(self, name) for name in Solid._fields}
+        return {name: known.get(name) if value is None else value for name, value in own.items()}
 
     def inertia(self) -> tuple[float, float, float]:
         """Mass m = rho pi (r_o^2 - r_i^2) L (kg), transverse m (3 (r_o^2 + r_i^2) + L^2)/12 and polar inertia
@@ -121,6 +144,8 @@ def body_errors(body: Body) -> list[tuple[str, str, str]]:
         bad.append(("outer_radius", f"{body.outer_radius:g} m", f"more than inner_radius = {body.inner_radius:g} m"))
     if body.length <= 0:
         bad.append(("length", f"{body.length:g} m", "a length > 0"))
+    if body.poisson is not None and not 0.0 <= body.poisson < 0.5:
+        bad.append(("poisson", f"{body.poisson:g}", "a ratio from 0 to 0.5"))
     if (body.material is None) == (body.density is None):
         found = "neither" if body.density is None else "both"
         bad.append(("material", found, f"one of density and material ({', '.join(MATERIALS)})"))

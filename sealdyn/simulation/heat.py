@@ -15,6 +15,10 @@ HOTTEST = 1.55
 # Share of the heat that the leakage may carry; number (b mu U^2/k) from which the film is warmer than its walls.
 CARRIES, THICK_FILM = 1.0 / 3.0, 1.0
 RADII = 2001
+# Share by which the friction of a run may differ from that of the aligned film.
+ANOTHER = 0.05
+# Convection is known to a factor of two.
+COOLINGS = (0.5, 2.0)
 
 
 def heat_of(scene, state: WarmState | None) -> dict | None:
@@ -39,10 +43,26 @@ def heat_of(scene, state: WarmState | None) -> dict | None:
         "slow_eigenvalue": None if state.slow is None else [state.slow.real, state.slow.imag],
         "stable": state.stable,
         "boiling_radius": boiling_radius(found, state),
-        "boiling_radius_hottest": boiling_radius(found, state, HOTTEST),
+        "boiling_radius_hottest": boiling_radius(found, state, max(HOTTEST, _hottest(found))),
         "cold": {"clearance": cold and cold.clearance, "power": cold and cold.power, "leakage": cold and cold.leakage},
+        "interval": _interval(scene),
+        "hottest": found.sealed + _hottest(found) * state.rise,
         "rings": {name: vars(ring) for name, ring in found.rings.items()},
     }
+
+
+def _hottest(found: Warming) -> float:
+    """The hottest place over the mean rise: of the rings from their drawings, or the largest there is."""
+    return max((ring.hottest for ring in found.rings.values() if ring.hottest is not None), default=HOTTEST)
+
+
+def _interval(scene) -> dict | None:
+    """Rise (K), coning (rad) and heat (W) with half and with twice the convection, None where no ring is from its
+    drawing; null where there is no warm state."""
+    if all(ring.convection is None for ring in scene.film.heat.rings.values()):
+        return None
+    ends = [warming(scene, cooling).working() for cooling in COOLINGS]
+    return {key: [end and getattr(end, key) for end in ends] for key in ("rise", "coning", "power")}
 
 
 def boiling_radius(found: Warming, state: WarmState, times: float = 1.0) -> float | None:
@@ -68,14 +88,25 @@ def boiling_radius(found: Warming, state: WarmState, times: float = 1.0) -> floa
     return float(boils[-1] if outer >= inner else boils[0])
 
 
-def heat_cautions(scene, state: WarmState) -> list[Caution]:
-    """Where the warm state leaves what it is valid for."""
+def heat_cautions(scene, state: WarmState, friction: float = math.nan) -> list[Caution]:
+    """Where the warm state leaves what it is valid for, and where the mean `friction` (W) of a run is another."""
     found, words = warming(scene), []
     liquid, film = liquid_of(scene.film), scene.film
     if (radius := boiling_radius(found, state)) is not None:
-        words.append(f"boils at the low pressure, up to r = {radius * 1e3:.5g} mm: no film here knows vapour")
+        words.append(f"the film boils at the low pressure, up to r = {radius * 1e3:.5g} mm: no film here knows vapour")
     elif (radius := boiling_radius(found, state, HOTTEST)) is not None:
-        words.append(f"may boil where the face is hottest, up to r = {radius * 1e3:.5g} mm")
+        words.append(f"the film may boil where the face is hottest, up to r = {radius * 1e3:.5g} mm")
+    for said, holds in (
+        ("the convection is extrapolated beyond Becker's Reynolds numbers of 800 to 1e5", "extrapolated"),
+        ("the band is narrower than a third of its ring: the resistance is known less well", "narrow"),
+        ("the ring is longer than four times its width: its coning is known less well", "long"),
+    ):
+        names = [name for name, ring in found.rings.items() if getattr(ring, holds)]
+        words += [f"{said} ({' and '.join(names)})"] if names else []
+    expected = state.power - state.flow_power
+    if expected > 0.0 and abs(friction / expected - 1.0) > ANOTHER:
+        factor = film.heat.friction * friction / expected
+        words.append(f"the run makes {friction:.4g} W, {expected:.4g} W are counted: film.heat.friction = {factor:.4g}")
     share = state.carried * state.rise / state.power if state.power else 0.0
     if share > CARRIES:
         words.append(f"leakage carries {100 * share:.3g} % of the heat: the rise is at most half as high as told")
@@ -89,7 +120,7 @@ def heat_cautions(scene, state: WarmState) -> list[Caution]:
         x = math.sqrt(nahme / 8.0)
         factor = math.asinh(x) / (x * math.sqrt(1.0 + x * x))
         words.append(f"Nahme number {nahme:.3g}: its friction is {factor:.3g} of that of one temperature")
-    return [Caution(Concern.HEATING, f"the warm film {said}") for said in words]
+    return [Caution(Concern.HEATING, f"heat: {said}") for said in words]
 
 
 def film_speed(scene):

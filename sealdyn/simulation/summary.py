@@ -21,7 +21,6 @@ from ..scene.radial import RadialScene
 from ..scene.rings import RING_NAMES, ROTOR, SMALL_TILT, STATOR
 from ..solvers.contract import Status
 from ..solvers.energy_audit import missing_energy
-from .heat import heat_cautions, heat_of
 from .plausibility import LAMINAR, cautions, couette_number, unit_warnings
 from .stability import found_alone, no_stability, stability
 
@@ -98,7 +97,7 @@ def parts(scenario, run, plan, outcome, tally, speeds: bool = True) -> dict:
             "max_power": tally.most("friction_power"),
             "temperature_rise": _temperature_rise(model, tally),
         },
-        "heat": lambda: heat_of(model.given, model.heat),
+        "heat": lambda: None if model.heat is None else _heat(model),
         "contact": _contact(run, outcome, tally),
         "secondary_seal": _secondary_seal(run),
         "film": _film(model, at, linear, tally, failed),
@@ -191,7 +190,13 @@ def _cautions(scenario, run, outcome, tally) -> list[Caution]:
     lost = missing_energy(outcome.energy_residual, model.accuracy)
     energy = [Caution(Concern.ENERGY, lost)] if lost else []
     found = cautions(scenario, run, outcome, leakage, heat, low, wear)
-    warm = heat_cautions(model.given, model.heat) if model.heat is not None else []
+    warm = []
+    if model.heat is not None:
+        from .heat import heat_cautions
+
+        constant = not isinstance(model.given.shaft.speed, PiecewiseLinear)
+        friction = tally.mean("friction_power") if constant else math.nan
+        warm = heat_cautions(model.given, model.heat, friction)
     return [*run.cautions, *energy, *_blown_open(model, tally), *found, *warm]
 
 
@@ -282,6 +287,13 @@ def _leakage(model, tally):
         "mean_kg_per_h": mean * density_of(model.scene.film) * KG_PER_H,
         "conditions": None if model.scene.film.gas is None else NORMAL,
     }
+
+
+def _heat(model):
+    # Loaded only where a ring takes heat.
+    from .heat import heat_of
+
+    return heat_of(model.given, model.heat)
 
 
 def _temperature_rise(model, tally):

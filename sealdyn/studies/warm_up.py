@@ -21,7 +21,7 @@ from ..units import Time
 from . import Info
 
 INFO = Info(
-    timed=("warm_pump", 3),
+    timed=("pump_seal", 3),
     asks="How does the seal warm up?",
     wavy=True,
     aligned=True,
@@ -69,7 +69,7 @@ def run(scenario, settings, tools) -> Answer:
     if settings.begin not in ("cold", "warm"):
         raise ScenarioError(scenario.name, "study.warm_up.begin", repr(settings.begin), '"cold" or "warm"')
     scene, times = _course(scene, settings, scenario.name)
-    found = warming(frozen_at(scene, 0.0))
+    found = warming(scene).under(frozen_at(scene, 0.0))
     if found.capacity is None:
         bare = next(name for name, ring in found.rings.items() if ring.time_constant is None)
         raise ScenarioError(scenario.name, f"film.heat.{bare}.time_constant", "nothing", "a time, to warm up in")
@@ -184,9 +184,9 @@ def _panels(numbers) -> list[Panel]:
         )
         heat.append(rubbed)
     return [
-        panel("Rise of the faces", "rise", "temperature", "bad", low=0.0),
-        panel("Coning", "coning", "tilt", "tilt"),
-        panel("Clearance", "clearance", "clearance", "film", low=0.0),
+        panel("Rise of the faces", "rise", "temperature", "bad", low=0.0, label="rise"),
+        panel("Coning", "coning", "tilt", "tilt", label="coning"),
+        panel("Clearance", "clearance", "clearance", "film"),
         replace(panel("Leakage", "leakage", "leakage", "blue"), first=True),
         Panel("Heat", over, Axis("power", "heat", low=0.0), heat),
         panel("Shaft speed", "speed", "speed", "black"),

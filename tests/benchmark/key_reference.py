@@ -126,10 +126,12 @@ def row(key: str, holds: dict, required: bool) -> str:
         varies = any("properties" in kind for kind in holds.get("anyOf", []))
         what = f"{holds['quantity']}, {holds['unit']}{' ~' if varies else ''}"
     else:
-        words = [word for kind in (holds, *holds.get("anyOf", [])) for word in kind.get("enum", [])]
+        kinds = (holds, *holds.get("anyOf", []))
+        words = [word for kind in kinds for word in kind.get("enum", [kind["const"]] if "const" in kind else [])]
         what = ", ".join(f"`{json.dumps(word)}`" for word in words) or {"boolean": "true or false"}.get(
             holds.get("type"), holds.get("type")
         )
+        what = "".join([what or "", *(f", {kind['quantity']}, {kind['unit']}" for kind in kinds if "quantity" in kind)])
         if any("$ref" in kind for kind in holds.get("anyOf", [])):
             what += f", table `{key}`"
     default = "required" if required else f"`{shown(holds['default'])}`" if "default" in holds else "none"

@@ -267,6 +267,15 @@ def test_hardly_and_well_cooled_rings():
     )
 
 
+def test_a_thin_ring():
+    """Of a ring a hundred times larger than wide the fin is right to what a grid of 24 by 32 cells errs."""
+    numbers = {key: value for key, value in STEEL.items() if key != "modulus"}
+    fin, found = ring_fin(0.6, 0.606, 0.012, convection=500.0, **numbers), ring_heat(body(600, 606, 12, STEEL, 500.0))
+    assert found.resistance == pytest.approx(fin.resistance, rel=5e-4)
+    assert found.coning_per_watt == pytest.approx(fin.coning_per_watt, rel=2e-3)
+    assert found.time_constant == pytest.approx(fin.time_constant, rel=3e-3)
+
+
 def test_the_back_of_a_long_ring_does_not_matter():
     long, longer = (ring_heat(body(30, 36, length, CARBON, 8000.0, (31, 34))) for length in (40, 60))
     assert longer.resistance == pytest.approx(long.resistance, rel=0.02)

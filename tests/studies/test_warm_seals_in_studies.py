@@ -16,8 +16,10 @@ SHAKEN = SMOOTH | {"housing": {"axial": [{"frequency": "100 Hz", "acceleration":
 WORN = ROUGH | {"contact": ROUGH["contact"] | {"stator_wear_coefficient": 1e-15}}
 # What is not of the seal itself: instants and places of equal extremes, times of computing, words that count roots, and
 # thresholds that need other speeds.
-ELSEWHERE = ("time", "theta", "residual", "seconds", "multipliers", "moment", "critical_speed", "speed_margin", "speeds_held",
-             "closing_said", "message", "verdict", "notes", "heat", "balance", "why_none", "tables")  # fmt: skip
+ELSEWHERE = {
+    "time", "theta", "residual", "seconds", "multipliers", "moment", "critical_speed", "speed_margin", "speeds_held",
+    "closing_said", "message", "verdict", "notes", "heat", "balance", "why_none", "tables",
+}  # fmt: skip
 # Study, seal, settings.
 AT_ONE_SPEED = {
     "pressure": (SMOOTH, {"at": "tilt=0.01mrad"}),

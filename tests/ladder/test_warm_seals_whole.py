@@ -1,0 +1,172 @@
+"""Warm seals whole, by finite elements of both rings, beside two numbers a ring from its drawing."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from own_warm import Seal, one_temperature, slow_root, warm
+from scipy.optimize import brentq
+
+from sealdyn.faces.ring_coning import RingBody
+from sealdyn.faces.ring_heat import ring_heat
+
+CARBON = dict(density=1800.0, modulus=20e9, poisson=0.2, expansion=4.5e-6, conductivity=10.0, specific_heat=750.0)
+CARBIDE = dict(density=3100.0, modulus=410e9, poisson=0.16, expansion=4e-6, conductivity=125.0, specific_heat=670.0)
+STEEL = dict(density=7950.0, modulus=193e9, poisson=0.3, expansion=16e-6, conductivity=15.0, specific_heat=500.0)
+BRONZE = dict(density=8800.0, modulus=100e9, poisson=0.34, expansion=18e-6, conductivity=50.0, specific_heat=380.0)
+
+
+def water_viscosity(kelvin):
+    return np.exp(-10.57455285 + 552.34120971 / (kelvin - 142.78519617))
+
+
+def water_heat(kelvin):
+    c = (kelvin - 273.15) / 100
+    density = 1000 + 2.74266 * c - 65.0028 * c**2 + 26.7366 * c**3 - 6.14552 * c**4
+    return density * (4214.72 - 220.039 * c + 427.949 * c**2 - 299.399 * c**3 + 93.198 * c**4)
+
+
+def oil_viscosity(kelvin):
+    """Walther's law through 32 mm^2/s at 40 degC and 5.4 at 100 degC."""
+    high, low = (np.log10(np.log10(nu + 0.7)) for nu in (32.0, 5.4))
+    slope = (high - low) / np.log10(373.15 / 313.15)
+    return 870e-6 * (10**10 ** (high - slope * np.log10(kelvin / 313.15)) - 0.7)
+
+
+def oil_heat(kelvin):
+    return 870.0 * 2000.0 + 0.0 * kelvin
+
+
+def ring(inner, outer, length, material, convection, band, wetted=None, wet="outer"):
+    """A ring by its radii and lengths in mm."""
+    sizes = [1e-3 * x for x in (inner, outer, length, *band)]
+    return RingBody(*sizes, **material, convection=convection, wetted_length=1e-3 * (wetted or length), wet=wet)
+
+
+PUMP = ring(23, 32, 20, CARBON, 12e3, (25, 30), 12), ring(24, 32, 10, CARBIDE, 19e3, (25, 30))
+OF_PUMP = 1e6, 308.923278, 0.75, 40.0, 303.15, water_viscosity, water_heat
+SHIPPED = ring(29, 36, 20, CARBON, 13590.0, (30.5, 34), 12), ring(29, 38, 10, CARBIDE, 21572.0, (30.5, 34))
+OILED = ring(33, 43, 15, BRONZE, 1400.0, (35, 40), 10), ring(34, 44, 14, STEEL, 2200.0, (35, 40))
+SEALS = {
+    "pump, 400 urad": Seal(PUMP, 4e-4, *OF_PUMP),
+    "pump, 50 urad": Seal(PUMP, 5e-5, *OF_PUMP),
+    "pump_seal": Seal(
+        SHIPPED, 5e-5, 1e6, 308.923278, 0.8, 100.0, 313.15, water_viscosity, water_heat, 3e-7, 1e8, 0.1
+    ),
+    "oil": Seal(OILED, 2e-4, 2e6, 314.159265, 0.78, 100.0, 333.15, oil_viscosity, oil_heat),
+}  # fmt: skip
+NUMBERS = "rise", "coning", "clearance", "power", "leakage"
+# Both rings by another program's finite elements: NUMBERS and the hottest place, K, rad, m, W, m^3/s, K.
+WHOLE = {
+    "pump, 50 urad": (5.07, 1.114e-4, 2.126e-7, 103.4, 1.8175e-10, 5.99),
+    "pump_seal": (8.03, 1.652e-4, 1.884e-7, 187.2, 3.303e-10, 12.48),
+    "oil": (32.05, 1.2668e-3, 1.7404e-6, 223.9, 4.6233e-8, 35.23),
+}
+# By one temperature, with that program's resistances (K/W), conings (rad/W) and time constants (s) of the rings.
+ONE = {
+    "pump, 400 urad": (1.3373, 4.1583e-4, 8.4211e-7, 27.694, 1.1287e-8),
+    "pump, 50 urad": (4.8342, 1.0721e-4, 2.1711e-7, 99.885, 2.0792e-10),
+    "pump_seal": (8.0858, 1.4859e-4, 1.8413e-7, 191.16, 3.1298e-10),
+    "oil": (31.224, 1.1896e-3, 1.8306e-6, 216.33, 5.5971e-8),
+}
+RINGS = {
+    "pump, 400 urad": ((0.4055, 0.05496), (2.557e-6, 3.038e-7), (2.05, 0.614)),
+    "pump_seal": ((0.3694, 0.04777), (2.5756e-6, 2.494e-7), (1.169, 0.517)),
+    "oil": ((0.2684, 0.32203), (2.0858e-6, 7.7034e-6), (22.2, 10.9)),
+}  # fmt: skip
+
+
+@cache
+def whole(name):
+    return warm(SEALS[name])
+
+
+def by_drawing(name):
+    """With the numbers that the rings' drawings give."""
+    found = [ring_heat(body) for body in SEALS[name].rings]
+    return one_temperature(SEALS[name], [x.resistance for x in found], [x.coning_per_watt for x in found])
+
+
+def numbers(state):
+    return [getattr(state, name) for name in NUMBERS]
+
+
+@pytest.mark.parametrize("name", RINGS)
+def test_rings_of_the_seals_by_an_independent_program(name):
+    found = [ring_heat(body) for body in SEALS[name].rings]
+    resistances, conings, times = RINGS[name]
+    assert [x.resistance for x in found] == pytest.approx(resistances, rel=6e-3)
+    assert [x.coning_per_watt for x in found] == pytest.approx(conings, rel=3e-3)
+    assert [x.time_constant for x in found] == pytest.approx(times, rel=0.03)
+
+
+@pytest.mark.parametrize("name", SEALS)
+def test_one_temperature_from_the_drawing(name):
+    """The warm state with two numbers a ring; most off is the leakage, with the cube of the film."""
+    assert numbers(by_drawing(name)) == pytest.approx(ONE[name], rel=5e-3)
+
+
+@pytest.mark.core
+def test_a_seal_whole():
+    assert_whole("pump, 50 urad")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["pump_seal", "oil"])
+def test_other_seals_whole(name):
+    assert_whole(name)
+
+
+def assert_whole(name):
+    """Within 1 % of the other program (leakage 2 %); of this one, heat in is heat out, on half the mesh within 1 %."""
+    found, expected = whole(name), WHOLE[name]
+    assert numbers(found)[:-1] == pytest.approx(expected[:-2], rel=0.01)
+    assert (found.leakage, found.hottest) == pytest.approx(expected[-2:], rel=0.02)
+    assert sum(found.taken) + found.carried == pytest.approx(found.power, rel=1e-5)
+    coarse = warm(SEALS[name], finest=15)
+    assert numbers(coarse) == pytest.approx(numbers(found), rel=0.01)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", SEALS)
+def test_what_one_temperature_is_worth(name):
+    """Two numbers a ring beside the whole: 6 % in the rise, 5 % in heat, 10 % in the clearance and 25 % in leakage;
+    the coning by heat is up to 16 % too small, since the heat is made inside, where the film is thin."""
+    rung, full = by_drawing(name), whole(name)
+    assert rung.rise == pytest.approx(full.rise, rel=0.06)
+    assert rung.power == pytest.approx(full.power, rel=0.05)
+    assert rung.clearance == pytest.approx(full.clearance, rel=0.10)
+    assert rung.leakage == pytest.approx(full.leakage, rel=0.25)
+    cold = SEALS[name].coning
+    assert 0.84 < (rung.coning - cold) / (full.coning - cold) < 1.0
+    assert 1.05 < full.hottest / full.rise < 1.6
+
+
+INSIDE = Seal(
+    (
+        ring(23, 32, 20, CARBON, 12e3, (25, 30), 12, "bore"),
+        ring(24, 32, 10, CARBIDE, 18e3, (25, 30), wet="bore"),
+    ), -2e-4, -1e6, 0.0, 0.75, 40.0, 303.15, water_viscosity, water_heat,
+)  # fmt: skip
+
+
+def test_a_seal_pressurised_inside_hunts_before_it_folds():
+    """Onset of hunting at 7408 rpm with a period of 16 s, fold at 7935 rpm (both rings by another program's finite
+    volumes), from six states a ring; one temperature would see nothing below the fold, its loop gain is 0.32."""
+    rings = [ring_heat(body) for body in INSIDE.rings]
+    numbers = [x.resistance for x in rings], [x.coning_per_watt for x in rings]
+
+    def state(rpm):
+        seal = replace(INSIDE, speed=rpm * np.pi / 30)
+        return seal, one_temperature(seal, *numbers)
+
+    def slow(rpm):
+        return slow_root(*state(rpm), rings, 0.39j)
+
+    onset = brentq(lambda rpm: slow(rpm).real, 7300.0, 7450.0, xtol=1.0)
+    assert onset == pytest.approx(7408.0, rel=0.01)
+    assert 2 * np.pi / slow(onset).imag == pytest.approx(16.0, rel=0.05)
+    assert slow(7300.0) == pytest.approx(-0.107 + 0.324j, abs=0.03)
+    # There is a warm state up to the fold.
+    assert state(0.995 * 7935)[1] is not None and state(1.01 * 7935)[1] is None
