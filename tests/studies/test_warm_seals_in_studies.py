@@ -60,7 +60,6 @@ def numbers(found, name=""):
     return {name: float(found)} if isinstance(found, int | float) and not isinstance(found, bool) else {}
 
 
-@pytest.mark.core
 @pytest.mark.parametrize(("changes", "settings"), AT_ONE_SPEED.values(), ids=AT_ONE_SPEED)
 def test_at_one_speed_it_is_the_seal_with_the_warm_numbers(changes, settings, request):
     name, scenario = request.node.callspec.id.split(" ")[0], warm_seal(changes)
