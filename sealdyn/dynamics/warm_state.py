@@ -43,7 +43,7 @@ TINY = 1e-9
 # Halvings towards the rise at which a film holds no more.
 HALVINGS = 30
 # From rise to rise in looking for the balance of a speed nearby: first, and at most: near a fold two states are close.
-WIDER, WIDEST = 1.1, 1.5
+WIDER, WIDEST = 1.1, 1.2
 # From clearance to clearance in following one, and how far it is followed from rise to rise.
 STRIDE, REACH = 1.03, 60
 
