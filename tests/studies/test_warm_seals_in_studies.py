@@ -31,6 +31,7 @@ AT_ONE_SPEED = {
     "equilibrium": (SMOOTH, {"points": 11}),
     "equilibrium of rough faces": (WORN, {"points": 11}),
     "load-support": (WORN, {"vary": "contact.roughness=0.1 um"}),
+    "wear": (WORN | {"rotor.runout": 0.0}, {"duration": "10 s"}),
     "coefficients": (SMOOTH, {"points": 2, "speed": "308.923278 rad/s"}),
     "sweep": (SMOOTH, {"vary": "rotor.runout=10,20 urad"}),
 }
