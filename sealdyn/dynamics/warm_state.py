@@ -42,8 +42,8 @@ STEP, FINE = 1e-4, 1e-10
 TINY = 1e-9
 # Halvings towards the rise at which a film holds no more.
 HALVINGS = 30
-# From rise to rise in looking for the balance of a speed nearby: first, and at most.
-WIDER, WIDEST = 1.1, 1.5
+# From rise to rise in looking for the balance of a speed nearby: first, and at most: near a fold two states are close.
+WIDER, WIDEST = 1.1, 1.2
 # From clearance to clearance in following one, and how far it is followed from rise to rise.
 STRIDE, REACH = 1.03, 60
 
@@ -302,13 +302,23 @@ class Warming:
             if self.surplus(low) < 0.0:
                 low, high = self._held(low.rise / wider, low.clearance), low
             else:
-                low, high = high, self._held(max(high.rise * wider, FIRST * self.highest), high.clearance)
+                low, high = high, self._warmer(high, max(high.rise * wider, FIRST * self.highest))
             wider = min(wider**2, WIDEST)
+        return None
+
+    def _warmer(self, state: WarmState, rise: float) -> WarmState | None:
+        """A state warmer than one, at a rise (K) or as near to it as there is a film and the liquid's table; None where
+        both end with the state."""
+        rise = min(rise, self.highest)
+        while rise - state.rise > FIRST * self.highest:
+            if (found := self._held(rise, state.clearance)) is not None:
+                return found
+            rise = 0.5 * (state.rise + rise)
         return None
 
     def _held(self, rise: float, near: float) -> WarmState | None:
         """The state at a rise (K) and the clearance that continues one `near` (m); None where no film holds."""
-        clearance = self.clearance(rise, near) if TINY * self.highest < rise < self.highest else None
+        clearance = self.clearance(rise, near) if TINY * self.highest < rise <= self.highest else None
         return None if clearance is None else self.state(rise, clearance)
 
     def why_none(self) -> str:

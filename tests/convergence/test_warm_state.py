@@ -25,7 +25,7 @@ from warm_seals import (
 import sealdyn
 from sealdyn import Scenario
 from sealdyn.dynamics.interface import Interface
-from sealdyn.dynamics.warm_state import warming
+from sealdyn.dynamics.warm_state import NoWarmState, at_work, warming
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 # A liquid that never thins, and whose leakage carries no heat.
@@ -129,6 +129,20 @@ def test_slow_stiffness_over_fast_is_that_of_the_loops(changes):
     held_loop /= found.conductance + state.carried
     # The leakage's own change with the rise is within this: it carries 0.01 % of the heat.
     assert slow / fast == pytest.approx((1.0 - state.loop_gain) / (1.0 - held_loop), rel=5e-4)
+
+
+@pytest.mark.parametrize(
+    ("changes", "speeds"),
+    [({"film.coning": 4e-4}, (308.9, 5e3, 1e4, 1.6e4)), (INSIDE, (300.0, 600.0, 830.0, 838.0))],
+    ids=["to the end of the table", "to the fold"],
+)
+def test_a_state_followed_from_speed_to_speed_is_that_of_a_scan(changes, speeds):
+    near = None
+    for speed in speeds:
+        near = at_work(scene_of(changes), speed, near)[1]
+        assert near.rise == pytest.approx(warming(scene_of(changes, shaft__speed=speed)).working().rise, rel=1e-8)
+    with pytest.raises(NoWarmState):
+        at_work(scene_of(changes), 1.1 * speeds[-1], near)
 
 
 # --- a run is that of the scene with the warm numbers put in ---------------------------------------------

@@ -16,8 +16,10 @@ SHAKEN = SMOOTH | {"housing": {"axial": [{"frequency": "100 Hz", "acceleration":
 WORN = ROUGH | {"contact": ROUGH["contact"] | {"stator_wear_coefficient": 1e-15}}
 # What is not of the seal itself: instants and places of equal extremes, times of computing, words that count roots, and
 # thresholds that need other speeds.
-ELSEWHERE = ("time", "theta", "residual", "seconds", "multipliers", "moment", "critical_speed", "speed_margin", "speeds_held",
-             "closing_said", "message", "verdict", "notes", "heat", "balance", "why_none", "tables")  # fmt: skip
+ELSEWHERE = {
+    "time", "theta", "residual", "seconds", "multipliers", "moment", "critical_speed", "speed_margin", "speeds_held",
+    "closing_said", "message", "verdict", "notes", "heat", "balance", "why_none", "tables",
+}  # fmt: skip
 # Study, seal, settings.
 AT_ONE_SPEED = {
     "pressure": (SMOOTH, {"at": "tilt=0.01mrad"}),
@@ -29,6 +31,7 @@ AT_ONE_SPEED = {
     "equilibrium": (SMOOTH, {"points": 11}),
     "equilibrium of rough faces": (WORN, {"points": 11}),
     "load-support": (WORN, {"vary": "contact.roughness=0.1 um"}),
+    "wear": (WORN | {"rotor.runout": 0.0}, {"duration": "10 s"}),
     "coefficients": (SMOOTH, {"points": 2, "speed": "308.923278 rad/s"}),
     "sweep": (SMOOTH, {"vary": "rotor.runout=10,20 urad"}),
 }
@@ -58,7 +61,6 @@ def numbers(found, name=""):
     return {name: float(found)} if isinstance(found, int | float) and not isinstance(found, bool) else {}
 
 
-@pytest.mark.core
 @pytest.mark.parametrize(("changes", "settings"), AT_ONE_SPEED.values(), ids=AT_ONE_SPEED)
 def test_at_one_speed_it_is_the_seal_with_the_warm_numbers(changes, settings, request):
     name, scenario = request.node.callspec.id.split(" ")[0], warm_seal(changes)
