@@ -1,4 +1,4 @@
-"""Warm-up and Stribeck curve: the sheet's start of a pump seal, the end of a course, energy, and the states of speeds."""
+"""Warm-up and Stribeck curve: the start of a pump seal, the end of a course, energy, and the states of speeds."""
 
 import numpy as np
 import pytest
