@@ -17,10 +17,12 @@ from scipy.optimize import brentq
 
 from sealdyn.scene.gas import gas_of
 
-SECTORS = 16
+# Sectors over the root of clearance over touch: the thinner the film the sharper what it carries around the circle
+# (16 at a touch of 0.08 clearances erred by 2e-3 of the onset, 32 by 3e-6).
+SECTORS = 9.0
 
 
-def onset(scene, key, margin, sectors=SECTORS):
+def onset(scene, key, margin):
     """Value (rad) of `key`, "rotor.runout" under a stator that floats or "stator.misalignment" over a rotor that
     floats, at which the thinnest film is `margin` times the clearance, or where asperities meet."""
     film, speed = scene.film, scene.shaft.speed
@@ -31,6 +33,7 @@ def onset(scene, key, margin, sectors=SECTORS):
     if scene.contact:
         touch = (3.0 if scene.contact.law == "christensen" else 5.0) * scene.contact.roughness
     spins = (scene.stator.speed - frame, speed - frame)
+    sectors = 2 * math.ceil(0.5 * SECTORS * math.sqrt(film.clearance / touch))
 
     def loads(z, tilt):
         """Force (N) and the complex moment (N m) on the stator over the direction of the relative tilt (rad)."""
