@@ -16,6 +16,7 @@ def test_scenarios():
     assert ledger.counts["scenario read: done"] > 50 and ledger.counts["scenario read: refused"] > 500
 
 
+@pytest.mark.slow
 def test_archives(tmp_path):
     ledger = Ledger()
     archives(ledger, 7, range(10), tmp_path)
