@@ -49,6 +49,8 @@ class Value(types.WrapperAddressProtocol):
     """A kernel as a function value, its address looked up once: each look-up costs as much as thirty films."""
 
     def __init__(self, kernel, kind=FILM_TYPE):
+        # By its arguments alone, as a call compiles it: by its whole signature it would be made and kept once more.
+        kernel.compile(kind.signature.args)
         found = kernel.get_compile_result(kind.signature)
         self.address = found.library.get_pointer_to_function(found.fndesc.llvm_cfunc_wrapper_name)
         if not self.address:

@@ -10,6 +10,7 @@ from contextlib import contextmanager
 
 import pytest
 from numba import njit
+from numba.core import event
 
 import sealdyn.kernel_cache
 
@@ -171,6 +172,19 @@ def test_only_what_has_an_address_is_a_function_value():
     assert Value(wrench).address != 0
     with pytest.raises(TypeError, match="without"):
         Value(without)
+
+
+def test_a_function_value_is_kept_as_the_kernel_that_a_call_compiles():
+    """What is kept goes by the signature that was asked for, with its return type or without."""
+    from sealdyn.dynamics.native import Value
+
+    @njit
+    def plain(f, s):
+        s[0] = f[0]
+
+    with event.install_recorder("numba:compile") as seen:
+        Value(plain)
+    assert seen.buffer and {found.data["return_type"] for _, found in seen.buffer} == {None}
 
 
 KERNELS = """
