@@ -26,6 +26,8 @@ ACCURACY, RESOLVED = 1e-6, 1e-5
 CLOSED = 1e-4
 # Damping at least, as a share of that at the start: faces pressed flat squeeze nothing out.
 LEAST = 1e-6
+# Step of the Jacobian's differences, as a share of a state, and the least state (of the clearance at the start, or K).
+STEP, SMALLEST = 1e-6, 1e-2
 # Corrections of the common temperature at most, and the change (K) that is none.
 CORRECTIONS, SAME = 40, 1e-11
 
@@ -128,6 +130,15 @@ def course(scene, times, start: WarmState, say: Callable[[float], None] = lambda
         squeezed = now.excess / (damping * unit)
         return np.array([squeezed, *warming_up, now.power, (found.conductance + now.carried) * now.rise])
 
+    def jacobian(t, y):
+        # SciPy's own widens its steps without end for the two heats, on which nothing hangs.
+        found, before = np.zeros((len(y), len(y))), rates(t, y)
+        for k in range(len(y) - 2):
+            moved = y.copy()
+            moved[k] += STEP * max(abs(y[k]), SMALLEST)
+            found[:, k] = (rates(t, moved) - before) / (moved[k] - y[k])
+        return found
+
     def closed(t, y):
         return y[0] - CLOSED
 
@@ -137,7 +148,7 @@ def course(scene, times, start: WarmState, say: Callable[[float], None] = lambda
     for begin, end in pairwise(times):
         # At a step of a table the value is that of the piece.
         inside = np.nextafter(begin, end), np.nextafter(end, begin)
-        part = solve_ivp(rates, (begin, end), y, "Radau", rtol=ACCURACY, atol=scale, events=closed)
+        part = solve_ivp(rates, (begin, end), y, "Radau", rtol=ACCURACY, atol=scale, events=closed, jac=jacobian)
         for t, column in list(zip(part.t, part.y.T, strict=True))[1 if kept else 0 :]:
             clearance = max(float(column[0]), CLOSED) * unit
             found = here(min(max(t, inside[0]), inside[1]))

@@ -3,13 +3,14 @@
 import csv
 import io
 import math
+import os
 import re
+import stat
 from pathlib import Path
 
 from ..scene.excitation import MOTION_COLUMNS
 from ..units import MOST_LISTED, SECONDS, Angle, Length, QuantityError, quoted
 from .errors import ScenarioError
-from .files import whole_file
 
 NAMES = ("time", *MOTION_COLUMNS)
 QUANTITIES = dict(zip(NAMES, (SECONDS, Length.__metadata__[0], *[Angle.__metadata__[0]] * 2), strict=True))
@@ -173,3 +174,16 @@ def _number(file: str, name: str, line: int, row: list[str], place: int) -> floa
     if WITH_COMMA.fullmatch(cell):
         held, expected = f"{held}, a decimal comma", f"{expected} with a decimal point"
     raise QuantityError(f"{quoted(file)}, line {line}, column {name}: {held}", expected)
+
+
+def whole_file(path: Path, most: int) -> bytes:
+    """The bytes of a file; raises OSError for pipes, devices, what has more than `most` bytes, and what the system
+    makes up as it is read and has none now."""
+    # Of a pipe without a writer, or the kernel's messages, it does not wait.
+    with open(os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)), "rb") as file:
+        if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+            raise OSError("a pipe or a device")
+        data = file.read(most + 1)
+    if data is None or len(data) > most:
+        raise OSError(f"more than {most} bytes" if data else "nothing in it now")
+    return data

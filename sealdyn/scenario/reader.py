@@ -24,8 +24,7 @@ from .door import refuse_unbounded, refuse_unreadable
 from .errors import (
     ScenarioError,
 )
-from .files import whole_file
-from .motion_files import refuse_files_elsewhere
+from .motion_files import refuse_files_elsewhere, whole_file
 from .overrides import (
     as_written,
     key_and_words,

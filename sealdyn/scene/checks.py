@@ -9,8 +9,7 @@ from .contact import contact_errors, contact_thresholds, film_in_words, limit_in
 from .excitation import motion_errors, random_errors
 from .film import aligned_gaps, coned, follows_speed, pads_errors, profile_errors, reynolds_errors
 from .gas import GASES, gas_of
-from .heat import heat_errors
-from .liquid import liquid_errors
+from .liquid import heat_errors, liquid_errors
 from .rings import body_errors, elastic_errors, secondary_seal_errors
 from .scene import SceneError
 from .sweep import sweep_errors

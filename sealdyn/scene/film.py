@@ -41,8 +41,7 @@ from ..units import (
     Viscosity,
 )
 from .gas import Gas, GasDam, GasName, GasReynolds
-from .heat import Heat
-from .liquid import Liquid, LiquidName
+from .liquid import Heat, Liquid, LiquidName
 
 PressureDifference = Annotated[float, Quantity("pressure difference", "Pa", '"10 bar"', (), 0,
     usual=Usual(1e3, 1e9, "bar"))]  # fmt: skip

@@ -47,7 +47,7 @@ def heat_of(scene, state: WarmState | None) -> dict | None:
         "cold": {"clearance": cold and cold.clearance, "power": cold and cold.power, "leakage": cold and cold.leakage},
         "interval": _interval(scene),
         "hottest": found.sealed + _hottest(found) * state.rise,
-        "rings": {name: vars(ring) for name, ring in found.rings.items()},
+        "rings": {name: {k: v for k, v in vars(ring).items() if k != "whole"} for name, ring in found.rings.items()},
     }
 
 

@@ -11,7 +11,7 @@ import pytest
 from command import SCENARIOS, sealdyn
 
 from sealdyn.archive import only_writer, partial_path
-from sealdyn.scenario.files import whole_file
+from sealdyn.scenario.motion_files import whole_file
 
 SEAL = SCENARIOS / "fms_reference.toml"
 SHORT = ("--set", "run.turns=1", "--set", "run.samples_per_turn=16", "--no-plot")

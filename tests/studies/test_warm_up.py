@@ -27,26 +27,28 @@ def pump():
 
 
 @pytest.mark.core
-def test_start_of_the_pump_is_that_of_an_independent_program(pump, monkeypatch):
+def test_start_of_the_pump_is_that_of_an_independent_program(pump, monkeypatch, tmp_path):
     squeezed = Warming.damping
     monkeypatch.setattr(Warming, "damping", lambda self, *at: 1e-2 * squeezed(self, *at))
-    found = sealdyn.run_study("warm-up", pump, flags={"start": 1.0, "hold": 4.0})
+    found = sealdyn.run_study("warm-up", pump, tmp_path / "found.h5", flags={"start": 1.0, "hold": 4.0})
     for time, *row in START:
         here = [float(CubicSpline(found["time"], found[key])(time)) for key in ("rise", "coning", "clearance", "power")]
         assert here == pytest.approx(row, rel=1e-3), time
     assert found["energy_residual"] < 1e-9
 
 
-def test_squeeze_of_the_film_delays_the_start(pump):
-    found = sealdyn.run_study("warm-up", pump, flags={"start": 1.0, "hold": 1.0})
+def test_squeeze_of_the_film_delays_the_start(pump, tmp_path):
+    found = sealdyn.run_study("warm-up", pump, tmp_path / "found.h5", flags={"start": 1.0, "hold": 1.0})
     rise = float(np.interp(0.5, found["time"], found["rise"]))
     assert 0.97 * START[0][1] < rise < 0.999 * START[0][1]
 
 
 @pytest.mark.parametrize("rings", [RINGS, None])
-def test_course_ends_in_the_warm_state_and_cools_to_the_cold_one(pump, rings):
+def test_course_ends_in_the_warm_state_and_cools_to_the_cold_one(pump, rings, tmp_path):
     scenario = pump if rings else sealdyn.example("pump_seal")
-    found = sealdyn.run_study("warm-up", scenario, flags={"hold": 120.0, "stop": 1.0, "rest": 200.0})
+    found = sealdyn.run_study(
+        "warm-up", scenario, tmp_path / "found.h5", flags={"hold": 120.0, "stop": 1.0, "rest": 200.0}
+    )
     state = warming(scenario.scene).working()
     warm = int(np.searchsorted(found["time"], 121.0))
     for key in ("rise", "coning", "clearance", "power"):
@@ -55,8 +57,8 @@ def test_course_ends_in_the_warm_state_and_cools_to_the_cold_one(pump, rings):
     assert found["clearance"][-1] == pytest.approx(found["clearance"][0], rel=1e-2)
 
 
-def test_stribeck_has_the_warm_state_of_each_speed(pump):
-    found = sealdyn.run_study("stribeck", pump, flags={"points": 3})
+def test_stribeck_has_the_warm_state_of_each_speed(pump, tmp_path):
+    found = sealdyn.run_study("stribeck", pump, tmp_path / "found.h5", flags={"points": 3})
     for k, speed in enumerate(found["speed"]):
         state = warming(pump.with_(shaft__speed=speed).scene).working()
         assert found["temperature"][k] == pytest.approx(state.rise, rel=1e-6)
@@ -67,9 +69,9 @@ def test_stribeck_has_the_warm_state_of_each_speed(pump):
     assert np.all(np.diff(found["unheated"]["torque"]) > 0.0)
 
 
-def test_warm_up_needs_time_constants(pump):
+def test_warm_up_needs_time_constants(pump, tmp_path):
     bare = {name: {**ring, "time_constant": None} for name, ring in RINGS.items()}
     cold = pump.with_({"film.heat": {name: {k: v for k, v in ring.items() if v} for name, ring in bare.items()}})
     with pytest.raises(sealdyn.ScenarioError) as error:
-        sealdyn.run_study("warm-up", cold)
+        sealdyn.run_study("warm-up", cold, tmp_path / "found.h5")
     assert error.value.key == "film.heat.stator.time_constant"

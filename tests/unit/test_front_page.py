@@ -1,6 +1,5 @@
 """The README's own seal prints what the README says, and its table has every study."""
 
-import math
 import pkgutil
 import re
 from pathlib import Path
@@ -29,7 +28,9 @@ def test_seal_of_the_readme_gives_the_printed_answer(tmp_path):
         r"margin .* ([\d.]+) times": found["contact_margin"],
         r"mean ([\d.]+) ml/h": found["leakage"]["mean_ml_per_h"],
         r"friction +([\d.]+) W": found["friction"]["power"],
-        r"critical speed up to (\d+) rpm": found["stability"]["fastest"] * 30 / math.pi,
+        r"by heat ([\d.]+) K": found["heat"]["rise"],
+        r"of it by heat ([\d.]+) urad": found["heat"]["coning_by_heat"] * 1e6,
+        r"unheated: clearance ([\d.]+) um": found["heat"]["cold"]["clearance"] * 1e6,
     }.items():
         assert value == pytest.approx(float(re.search(printed, README)[1]), rel=1e-3), printed
     # Words as they stand there, whatever the last digits; the files are others.
