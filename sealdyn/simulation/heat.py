@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from ..dynamics.run_state import Caution, Concern
+from ..dynamics.warm_course import breaks
 from ..dynamics.warm_state import Warming, WarmState, warming
 from ..numerics.piecewise_linear import initially
 from ..scene.film import aligned_gaps, coned
@@ -107,6 +108,8 @@ def heat_cautions(scene, state: WarmState, friction: float = math.nan) -> list[C
     if expected > 0.0 and abs(friction / expected - 1.0) > ANOTHER:
         factor = film.heat.friction * friction / expected
         words.append(f"the run makes {friction:.4g} W, {expected:.4g} W are counted: film.heat.friction = {factor:.4g}")
+    if len(breaks(scene)) > 1:
+        words.append("temperature and coning stay those of the start, though loads change: study warm-up follows them")
     share = state.carried * state.rise / state.power if state.power else 0.0
     if share > CARRIES:
         words.append(f"leakage carries {100 * share:.3g} % of the heat: the rise is at most half as high as told")

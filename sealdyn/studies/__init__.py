@@ -33,6 +33,7 @@ class Info:
     it refuses them (`of_waves`: what the refusal adds).  `aligned`: its numbers are of aligned faces, and say so
     where faces press with a moment there.  `refuses`: of "contact", "secondary-seal" and such a "moment" what it cannot
     reckon with; --without leaves the first two out.
+    `warm`: what is said where rings take heat, of a temperature that does not follow what the study changes.
     `units` {key of the answer (joined by "/"), or its end, or "*" for all others: SI unit}, of elements with units of
     their own a list; what hangs on the scenario is in a table `units` of the answer.  `along` {table of the answer, or
     path of a column: names of what it lies along, in the order of its axes}: the dimensions in the archive.
@@ -43,6 +44,7 @@ class Info:
     seals: str = "face"
     wavy: bool = False
     aligned: bool = False
+    warm: str = ""
     of_waves: str = ""
     refuses: tuple[str, ...] = ()
     units: Mapping[str, str | list] = field(default_factory=dict)

@@ -167,6 +167,8 @@ def run_study(
         # Unless the study has told it itself.
         if failures and failures[0] not in known:
             notes.append(f"Failed points: {len(failures)}; the first: {failures[0]}")
+        if info.warm and not _is_radial(studied.scene) and studied.scene.film.heat is not None:
+            notes.append(info.warm)
         if info.aligned and not _is_radial(studied.scene) and (askew := _moment(studied.scene)):
             notes.append(f"The numbers are of aligned faces, which do not stay so: {askew}.")
         if left_out:

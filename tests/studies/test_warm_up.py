@@ -6,6 +6,7 @@ from scipy.interpolate import CubicSpline
 
 import sealdyn
 from sealdyn.dynamics.warm_state import Warming, warming
+from sealdyn.studies.wear.study import INFO
 
 RINGS = {
     "stator": {"resistance": 0.3694, "coning_per_watt": 2.5756e-6, "time_constant": 1.169},
@@ -75,3 +76,15 @@ def test_warm_up_needs_time_constants(pump, tmp_path):
     with pytest.raises(sealdyn.ScenarioError) as error:
         sealdyn.run_study("warm-up", cold, tmp_path / "found.h5")
     assert error.value.key == "film.heat.stator.time_constant"
+
+
+def test_a_temperature_that_stays_while_the_speed_changes_is_told(pump):
+    turning = pump.with_({"run.turns": 1, "shaft.speed": {"time": [0.0, 1.0], "value": [308.0, 309.0]}})
+    told = {name: sealdyn.run(scenario).summary["warnings"] for name, scenario in (("held", pump), ("ramp", turning))}
+    assert sum("heat" in line for line in told["ramp"]) == sum("heat" in line for line in told["held"]) + 1
+
+
+def test_wear_of_warm_faces_says_what_it_holds(pump, tmp_path):
+    worn = pump.with_({"contact.stator_wear_coefficient": "1e-15 1/Pa", "rotor.runout": 0, "stator.misalignment": 0})
+    found = sealdyn.run_study("wear", worn, tmp_path / "found.h5", flags={"duration": 60.0})
+    assert INFO.warm in found["notes"]

@@ -36,6 +36,7 @@ WAYS = ("up", "down")
 NEAR = 0.5
 INFO = Info(
     timed=("runup_past_threshold", 6),
+    warm="In time, temperature and coning are those of the first speed: study warm-up follows them.",
     # What follows the shaft's speed; of another key, of its rate and of an amplitude the answer knows the unit.
     units={
         **dict.fromkeys(("speed", "frequency", "h_min_speed", "relative_misalignment_speed", "speed_in_window",

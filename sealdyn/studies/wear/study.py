@@ -34,6 +34,7 @@ HISTORY = {
 }  # fmt: skip
 INFO = Info(
     timed=("run_in", 7),
+    warm="The temperature is that of the unworn faces, held while they wear.",
     asks="How do the faces wear over the hours?",
     of_waves="; how fast crests wear the study equilibrium says, with wear coefficients in [contact]",
     units={
