@@ -398,5 +398,9 @@ def at_work(scene, speed: float | None = None, near: WarmState | None = None):
         raise NoWarmState("shaft.speed", f"no warm state at {speed:.6g} rad/s", "a speed whose heat is carried away")
     if state is None:
         why = found.why_none() if not found.states else "every balance of heat is unstable"
-        raise NoWarmState("film.heat", f"no warm state: {why}", "a seal whose heat its rings and leakage carry away")
+        raise NoWarmState(
+            "film.heat",
+            f"no warm state: {why}",
+            "rings and leakage that carry the heat away, or a liquid known to a higher temperature",
+        )
     return found.at(state.rise, state.clearance), state
