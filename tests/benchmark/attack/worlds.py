@@ -345,7 +345,7 @@ WORLDS = {
     "a pipe that is full": full_pipe,
     "no way to programs": _with(PATH="", SHELL=None, USER=None, LOGNAME=None),
     "700 MB of memory": _limited(resource.RLIMIT_AS, 700 << 20),
-    "a stack of 64 kB": _limited(resource.RLIMIT_STACK, 1 << 16),
+    "a stack of 128 kB": _limited(resource.RLIMIT_STACK, 1 << 17),
     "a process alone": _limited(resource.RLIMIT_NPROC, 1),
     "no core files, no locked memory": _before(
         lambda: resource.setrlimit(resource.RLIMIT_CORE, (0, 0)),
