@@ -79,6 +79,7 @@ QUANTITIES = {
     "torque": Quantity("N m", "torque", "N m", 1.0),
     "friction_torque": Quantity("N m", "friction torque", "mN m", 1e3),
     "power": Quantity("W", "power", "W", 1.0),
+    "coning_per_watt": Quantity("rad/W", "coning over heat", "urad/W", 1e6),
     "heat_flux": Quantity("W/m^2", "heat flux", "W/cm^2", 1e-4),
     "force_per_length": Quantity("N/m", "force per length", "N/m", 1.0),
     "friction_power": Quantity("W", "friction", "W", 1.0),

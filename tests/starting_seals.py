@@ -52,7 +52,13 @@ def cycle(name: str, turns: float, over: Mapping = {}) -> tuple[Scenario, Scenar
     """A seal of SEALS from rest to its speed and back to rest in so many `turns`, and the same at its speed for as
     many; `over` changes both."""
     file, changes = SEALS[name]
-    seal = with_values(read_scenario(SCENARIOS / f"{file}.toml"), {**changes, **over})
+    seal = read_scenario(SCENARIOS / f"{file}.toml")
+    if seal.scene.film.heat is not None:
+        # Isothermal: a gas, or a film of nothing, has none of its heat.
+        tables = seal.to_dict()
+        tables["film"] = {k: v for k, v in tables["film"].items() if k not in ("liquid", "temperature", "heat")}
+        seal = Scenario.from_dict(tables | {"film": tables["film"] | {"viscosity": 0.65e-3}}, file)
+    seal = with_values(seal, {**changes, **over})
     speed = seal.scene.shaft.speed
     # Up and down take twice the time that their turns take at speed.
     unit = 0.25 * turns * 2 * math.pi / abs(speed)

@@ -9,11 +9,14 @@ from typing import TYPE_CHECKING
 
 from ..numerics.piecewise_linear import initially
 from ..scene.liquid import liquid_of
-from ..scene.scene import SceneError
 from .intervals import largest_value
 
 if TYPE_CHECKING:
     from ..faces.ring_heat import RingHeat
+
+
+# Speed (rad/s) at least.
+STANDING = 1.0
 
 
 @dataclass(frozen=True)
@@ -56,9 +59,9 @@ def heated_body(scene, name: str, cooling: float = 1.0) -> HeatedBody:
         fluid = [float(of(sealed)) for of in (liquid.density_at, liquid.viscosity_at, liquid.specific_heat_at,
                                               liquid.conductivity_at)]  # fmt: skip
         diameter = 2.0 * (body.inner_radius if wet == "bore" else body.outer_radius)
-        cooled = ring_cooling(speeds[name] if turns else max(speeds.values()), diameter, fluid, turns)
-        if not cooled.value > 0.0:
-            raise SceneError(f"film.heat.{name}.convection", '"becker" of a shaft at rest', "a shaft that turns")
+        # Faces that stand rub nothing: any convection will do.
+        passing = max(speeds[name] if turns else max(speeds.values()), STANDING)
+        cooled = ring_cooling(passing, diameter, fluid, turns)
         convection = cooled.value
     convection *= cooling
     length = ring.wetted_length or body.length

@@ -113,7 +113,7 @@ def _heated_lines(heat) -> list[str]:
     """What each ring takes of the heat, and how warm that makes the faces."""
     out = []
     for name, ring in heat["rings"].items():
-        parts = [f"{ring['resistance']:.4g} K/W", f"{1e6 * ring['coning_per_watt']:.4g} urad/W"]
+        parts = [f"{ring['resistance']:.4g} K/W", in_words("coning_per_watt", ring["coning_per_watt"])]
         parts += [f"settles in {in_words('time', ring['time_constant'])}"] if ring["time_constant"] else []
         parts += [f"h {ring['convection']:.4g} W/(m^2 K)", f"h w/k {ring['biot']:.3g}"] if ring["convection"] else []
         parts += [f"Re {ring['reynolds']:.3g}"] if ring["reynolds"] else []

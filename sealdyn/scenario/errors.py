@@ -47,6 +47,8 @@ NEAR = re.compile(r"nearest '(\w+)'$")
 ABOVE_TABLES = ("schema",)
 # Characters of what was expected: it may list names.
 LONGEST = 600
+# Of the keys that there are.
+FEW_WORDS = 400
 # Lines about one file.
 MOST = 50
 
@@ -196,7 +198,7 @@ def nearest(kind: type, path: str, key: str) -> str:
     close = spelled_like(key, names)
     if close:
         return f"nearest '{close[0]}' in [{names[close[0]]}]"
-    return f"the keys here are {', '.join(here)}"
+    return cut(f"the keys here are {', '.join(here)}", FEW_WORDS)
 
 
 def explained(name: str, kind: type, raw: dict, errors: list[dict]) -> list[ScenarioError]:

@@ -109,7 +109,7 @@ def _found(numbers) -> str:
     hot = int(np.argmax(numbers["rise"]))
     words = f"The faces get {in_words('temperature', numbers['rise'][hot])} warmer than the sealed liquid"
     first = next(k for k, rise in enumerate(numbers["rise"]) if rise >= (1.0 - NEARLY) * numbers["rise"][hot])
-    when = f"{100 * (1 - NEARLY):.0f} % of it after {in_words('time', numbers['time'][first])}"
+    when = f"{in_words('share', 1.0 - NEARLY)} of it after {in_words('time', numbers['time'][first])}"
     begin, then = (in_words("clearance", numbers["clearance"][k]) for k in (0, hot))
     return f"{words}, {when}; the clearance goes from {begin} to {then}."
 

@@ -129,9 +129,9 @@ def test_a_warm_scenario_comes_back_as_it_went(liquid):
 
 
 def _names():
-    from sealdyn.scene import excitation, film, heat, liquid, rings, scene
+    from sealdyn.scene import excitation, film, liquid, rings, scene
 
-    return {k: v for m in (excitation, film, heat, liquid, rings, scene) for k, v in vars(m).items()}
+    return {k: v for m in (excitation, film, liquid, rings, scene) for k, v in vars(m).items()}
 
 
 def test_an_archive_keeps_its_liquid_and_heat(tmp_path):
