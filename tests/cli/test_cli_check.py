@@ -65,9 +65,9 @@ def test_tables_of_studies_are_read_whatever_is_asked(tmp_path):
 def test_check_warns_before_a_run_does(tmp_path):
     """Slips of units, inertia left out and edges that boil need no run to be seen."""
     slips = ["--set", "film.outer_pressure=8", "--set", 'film.vapour_pressure="2 bar"']
-    answer = sealdyn("check", SCENARIOS / "pump_seal.toml", *slips, cwd=tmp_path)
+    answer = sealdyn("check", SCENARIOS / "rub.toml", *slips, cwd=tmp_path)
     assert answer.code == 0
-    told = sealdyn("check", SCENARIOS / "pump_seal.toml", *slips, "--json", cwd=tmp_path).found["warnings"]
+    told = sealdyn("check", SCENARIOS / "rub.toml", *slips, "--json", cwd=tmp_path).found["warnings"]
     assert all(f"# WARNING {sentence}" in answer.out for sentence in told) and len(told) > 1
 
 

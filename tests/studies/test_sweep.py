@@ -237,6 +237,8 @@ RUNOUT, SPEED = "rotor.runout=1,333 urad", "shaft.speed=3e3,2e6 rpm"
 )
 def test_all_points_begin_alike_where_they_can(tmp_path, overrides, vary, common):
     pump = re.search(r"```toml\n(.*?)```", (PATH.parents[1] / "README.md").read_text(), re.DOTALL)[1]
+    # Isothermal: of the highest speed there is no warm state.
+    pump = re.sub(r"(?m)^heat\..*\n", "", pump)
     scenario = parse_scenario(pump, "pump", ["run.turns=1", "run.accuracy=1e-2", "rotor.runout=1 urad", *overrides])
     flags = {"vary": vary, "outputs": "h_min.value"}
     answer = run_study("sweep", scenario, tmp_path / "sweep.h5", flags=flags, workers=1)
