@@ -10,14 +10,15 @@ import pytest
 
 from sealdyn import kernel_cache, terminal
 
-# Of each film and kind of motion one that ships.
-RUNS = (
-    "fms_reference", "free_precession", "gas_dam_reference", "gas_reynolds_reference", "lebeck_n3", "pump_seal",
-    "ludwig_allen", "rub", "massless_ring",
-)  # fmt: skip
+# Of those that ship a linear film, one that is free, a gas, and rough faces that are warm: all take many minutes.
+RUNS = ("fms_reference", "free_precession", "gas_dam_reference", "pump_seal")
 COUNT = """
 import json, sys
 from sealdyn import cli, kernel_cache
+from sealdyn.analysis import check
+
+shipped = check.shipped_paths
+check.shipped_paths = lambda: {name: path for name, path in shipped().items() if name in RUNS}
 
 found = []
 kernel_cache.compiling.append(found.append)
@@ -32,7 +33,7 @@ except SystemExit as end:
 def compiled_by(folder, *words):
     """Exit code of a verb, and how often numba began or ended to compile."""
     done = subprocess.run(
-        [sys.executable, "-c", COUNT, *map(str, words)], capture_output=True, text=True,
+        [sys.executable, "-c", f"RUNS = {RUNS}\n{COUNT}", *map(str, words)], capture_output=True, text=True,
         env={**os.environ, "NUMBA_CACHE_DIR": str(folder / "kernels")},
     )  # fmt: skip
     return json.loads(done.stderr.splitlines()[-1])
@@ -41,7 +42,7 @@ def compiled_by(folder, *words):
 @pytest.mark.slow
 def test_after_compile_runs_compile_nothing(tmp_path):
     code, count = compiled_by(tmp_path, "compile")
-    assert code == 0 and count > 200
+    assert code == 0 and count > 100
     found = {
         name: compiled_by(tmp_path, "run", f"scenarios/{name}.toml", "--no-plot", "--out", tmp_path / "a.h5")
         for name in RUNS

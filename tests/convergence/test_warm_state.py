@@ -156,11 +156,7 @@ FILMS = {
     "linear": {"film.model": "linear", "film.coefficients": "radial"},
     "rough": ROUGH,
     "oil": {"film.liquid": VG32, "film.temperature": "60 degC", "film.coning": 2e-4},
-    "reynolds with waves": {
-        "film.coning": 4e-4, "film.model": "reynolds", "film.cavitation_pressure": 1e5,
-        "film.reynolds": {"cells_r": 4, "cells_theta": 32}, "stator.waviness": [{"order": 2, "amplitude": 2e-7}],
-    },
-}  # fmt: skip
+}
 
 
 def by_hand(scenario):

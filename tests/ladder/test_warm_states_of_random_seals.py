@@ -8,7 +8,7 @@ from warm_seals import scene_of
 
 from sealdyn.dynamics.warm_state import warming
 
-SEED, FEW, MANY, IN_TIME = 41, 20, 200, 10
+SEED, FEW, MANY, IN_TIME = 41, 20, 60, 10
 # Of rises and clearances; those of rough faces have a kink where the asperities of a part of the face begin to touch.
 SAME, ROUGH = 1e-5, 2e-4
 
@@ -40,7 +40,7 @@ def test_every_state_is_found_and_no_other():
 @pytest.mark.slow
 def test_so_it_is_of_many():
     for seal in seals(MANY)[FEW:]:
-        is_found(seal, 1200)
+        is_found(seal, 300)
 
 
 def test_a_slow_eigenvalue_is_the_growth_in_time():
