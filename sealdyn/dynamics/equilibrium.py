@@ -113,6 +113,20 @@ def settle(scene: Scene, opening_force) -> tuple[float, ClosingForce, list[Equil
     return stable[-1].clearance, law, roots, said
 
 
+def closing_law(scene: Scene, opening_force) -> tuple[ClosingForce, str]:
+    """The closing force of a scene, as given or what holds its clearance, and a sentence; unlike `settle`, also of one
+    without a stable equilibrium."""
+    film, closing = scene.film, scene.closing
+    if film.clearance is not None:
+        return settle(scene, opening_force)[1::2]
+    if closing.balance_ratio is None or closing.spring_force is None:
+        raise SceneError("film.clearance", "nothing", "a length, or both balance_ratio and spring_force")
+    area = math.pi * (film.outer_radius**2 - film.inner_radius**2)
+    outer_is_high = initially(film.outer_pressure) >= initially(film.inner_pressure)
+    law = ClosingForce(area, closing.balance_ratio, closing.spring_force, outer_is_high)
+    return law, "closing force from balance ratio and spring"
+
+
 def extent(film, waves=(), contact=None) -> tuple[float, float]:
     """Difference (m) between the thickest and the thinnest place of the aligned film, and the clearance (m) below which
     it is closed somewhere, as a diverging one is at its outer edge; waves (Waviness) at their highest at one place,

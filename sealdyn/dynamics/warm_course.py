@@ -53,7 +53,6 @@ class ThermalStates:
         self.several = all(whole is not None for whole in wholes)
         if not self.several:
             self.storing = np.array([found.capacity])
-            self.size = 1
             return
         self.ring = np.concatenate([np.full(len(whole.resistances), k) for k, whole in enumerate(wholes)])
         self.time = np.concatenate([whole.time_constants for whole in wholes])
@@ -61,7 +60,6 @@ class ThermalStates:
         self.coning = np.concatenate([whole.conings for whole in wholes]) / self.resistance
         self.immediate = np.array([whole.immediate_resistance for whole in wholes])
         self.immediate_coning = np.array([whole.immediate_coning for whole in wholes])
-        self.size = len(self.time)
 
     def steady(self, found: Warming, rise: float) -> np.ndarray:
         """The states at a rise (K) that stays."""

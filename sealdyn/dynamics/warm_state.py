@@ -30,7 +30,7 @@ from ..scene.film import coned
 from ..scene.liquid import in_numbers, liquid_of
 from ..scene.scene import Closing, SceneError
 from ..status import Status
-from .equilibrium import ClosingForce, crossing, equilibria, settle
+from .equilibrium import closing_law, crossing, equilibria
 from .heated_rings import heated_body
 from .interface import Asked, Interface, flow_at_rest, opening_law, rest_state
 
@@ -53,9 +53,8 @@ class WarmState:
     """A state in which heat balances: `rise` (K) of the faces over the sealed liquid, `clearance` (m) and `coning`
     (rad) then, `viscosity` (Pa s), heat made `power` (W), of it the asperities' `contact_power` and what the leakage
     spends `flow_power`, `carried` (W/K) by the leakage, `loop_gain` dH/d(rise) over (G + carried), `slow` the least
-    damped
-    eigenvalue (1/s, complex; None without time constants), and whether it is `stable`; `torque` (N m) of film and
-    asperities, `excess` (N) of the opening force over the closing force, which is 0 at its clearance; `coned_by`:
+    damped eigenvalue (1/s, complex; None without time constants), and whether it is `stable`; `torque` (N m) of film
+    and asperities, `excess` (N) of the opening force over the closing force, which is 0 at its clearance; `coned_by`:
     coning by heat (rad)."""
 
     rise: float
@@ -80,7 +79,8 @@ class Warming:
     and its warm states.  Raises SceneError where no closing force is known."""
 
     def __init__(self, scene, cooling: float = 1.0):
-        self.law, self.said = _closing(_unheated(scene))
+        cold = _unheated(scene)
+        self.law, self.said = closing_law(cold, opening_law(cold))
         self.rings = {name: heated_body(scene, name, cooling) for name in scene.film.heat.rings}
         self.conductance = sum(1.0 / ring.resistance for ring in self.rings.values())
         self.coning_per_kelvin = sum(ring.coning_per_watt / ring.resistance for ring in self.rings.values())
@@ -277,9 +277,8 @@ class Warming:
     def working(self, near: WarmState | None = None) -> WarmState | None:
         """The state that the seal works in, the coolest stable one; looked for beside one `near` first, that of a speed
         nearby, whose stability is then that of the balance alone.  None if there is none."""
-        if near is not None:
-            return self._beside(near) if near.rise > 0.0 else None
-        return self._coolest
+        # A shaft that stands makes no heat to begin from.
+        return self._beside(near) if near is not None and near.rise > 0.0 else self._coolest
 
     @cached_property
     def _coolest(self) -> WarmState | None:
@@ -302,7 +301,7 @@ class Warming:
             if self.surplus(low) < 0.0:
                 low, high = self._held(low.rise / wider, low.clearance), low
             else:
-                low, high = high, self._warmer(high, max(high.rise * wider, FIRST * self.highest))
+                low, high = high, self._warmer(high, max(high.rise * wider, high.rise + FIRST * self.highest))
             wider = min(wider**2, WIDEST)
         return None
 
@@ -310,7 +309,8 @@ class Warming:
         """A state warmer than one, at a rise (K) or as near to it as there is a film and the liquid's table; None where
         both end with the state."""
         rise = min(rise, self.highest)
-        while rise - state.rise > FIRST * self.highest:
+        # Whatever was asked for is tried, and halves of it.
+        while rise - state.rise > 0.1 * FIRST * self.highest:
             if (found := self._held(rise, state.clearance)) is not None:
                 return found
             rise = 0.5 * (state.rise + rise)
@@ -353,19 +353,6 @@ def _whole(scene):
     """The scene with the film whose coefficients a linear one borrows: that one's leakage and friction are observed."""
     borrows = scene.film.model == "linear" and scene.film.coefficients == "radial"
     return replace(scene, film=replace(scene.film, model="radial")) if borrows else scene
-
-
-def _closing(cold) -> tuple[ClosingForce, str]:
-    """The closing force of a scene without heat, as given or what holds its clearance, and a sentence."""
-    film, closing = cold.film, cold.closing
-    if film.clearance is not None:
-        return settle(cold, opening_law(cold))[1::2]
-    if closing.balance_ratio is None or closing.spring_force is None:
-        raise SceneError("film.clearance", "nothing", "a length, or both balance_ratio and spring_force")
-    area = math.pi * (film.outer_radius**2 - film.inner_radius**2)
-    outer = initially(film.outer_pressure) >= initially(film.inner_pressure)
-    law = ClosingForce(area, closing.balance_ratio, closing.spring_force, outer)
-    return law, "closing force from balance ratio and spring"
 
 
 @lru_cache(maxsize=64)

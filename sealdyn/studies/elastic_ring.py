@@ -9,6 +9,7 @@ import numpy as np
 from ..analysis.elastic_ring import release
 from ..answers import Answer, Axis, Level, Panel, Series, Table
 from ..dynamics.elastic_ring import OperatingPoint, operating_point, operating_points, order_of, with_cells_of
+from ..dynamics.warm_state import at_work
 from ..quantities import in_words
 from ..scene.scene import SceneError
 from ..scene.variants import frozen_at_start
@@ -52,7 +53,7 @@ class Settings:
 
 def run(scenario, settings, tools) -> Answer:
     """The curve of initial over net waviness, operating points by two roads."""
-    scene = frozen_at_start(scenario.scene)
+    scene = at_work(frozen_at_start(scenario.scene))[0]
     ring = scene.stator.elastic
     if ring is None:
         expected = "the ring that bends: bending_stiffness, radius, torsion_ratio"

@@ -10,6 +10,7 @@ from ..answers import Answer, Axis, Level, Panel, Series, Table
 from ..dynamics.equilibrium import (
     ROUNDING,
     ClosingForce,
+    closing_law,
     crossing,
     equilibria,
     extent,
@@ -91,16 +92,16 @@ def find(scene) -> Found:
     def opening(clearance, inner, outer):
         return sum(parts(clearance, inner, outer))
 
-    law, said = closing_force(scene, opening)
+    law, said = closing_law(scene, opening)
     found = Found(law, said, parts, pressures, [])
     return replace(found, roots=equilibria(film, opening, found.closing, *pressures, waves_of(scene), scene.contact))
 
 
 def run(scenario, settings, tools) -> Answer:
     """All equilibria in the range, the opening force over clearance and the closing force."""
-    given = kept_waves(frozen_at_start(scenario.scene))
+    given = frozen_at_start(scenario.scene)
     warm = warming(given) if given.film.heat is not None else None
-    scene = at_work(given)[0] if warm is None else _as_warm(warm)
+    scene = resting(given) if warm is None else _as_warm(warm)
     found, film, surfaces = find(scene), coned(scene), (waves_of(scene), scene.contact)
     low, high = _range(film, surfaces, found.roots, settings)
     rows = _warm_rows(given, warm) if warm is not None else [
@@ -160,8 +161,9 @@ def _warm_rows(scene, warm) -> list[dict]:
     return rows
 
 
-def kept_waves(scene):
-    """The scene with the waves that are left at rest of an elastic ring's."""
+def resting(scene):
+    """The scene as it works (dynamics/warm_state.py), with the waves that are left at rest of an elastic ring's."""
+    scene = at_work(scene)[0]
     if scene.stator.elastic is None:
         return scene
     from ..dynamics.elastic_ring import at_rest
@@ -243,19 +245,6 @@ def _held(root, excess, friction) -> list:
         beyond = sorted((near, near * ratio))
         ends.append(crossing(lambda c: abs(excess(c)) - friction, *beyond) if within else None)
     return ends
-
-
-def closing_force(scene, opening) -> tuple[ClosingForce, str]:
-    """The closing force and a sentence; unlike `settle`, also of a scene without a stable equilibrium."""
-    if scene.film.clearance is not None:
-        _, law, _, said = settle(scene, opening)
-        return law, said
-    film, closing = scene.film, scene.closing
-    if closing.balance_ratio is None or closing.spring_force is None:
-        raise SceneError("film.clearance", "nothing", "a length, or both balance_ratio and spring_force")
-    area = math.pi * (film.outer_radius**2 - film.inner_radius**2)
-    law = ClosingForce(area, closing.balance_ratio, closing.spring_force, film.outer_pressure >= film.inner_pressure)
-    return law, "closing force from balance ratio and spring"
 
 
 def _range(film, surfaces, roots, settings) -> tuple[float, float]:

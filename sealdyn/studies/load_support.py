@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from functools import partial
 
 from ..answers import Answer, Axis, Panel, Series, Table
-from ..dynamics.warm_state import at_work
 from ..quantities import in_words
 from ..scenario.errors import ScenarioError
 from ..scenario.reader import with_values
@@ -13,7 +12,7 @@ from ..scenario.settings import axis, with_own_unit
 from ..scene.scene import SceneError
 from ..scene.variants import frozen_at_start
 from . import Info
-from .equilibrium import find, kept_waves, root_row
+from .equilibrium import find, resting, root_row
 from .sweep import along, quantity_along
 
 OUTPUTS = {"clearance": "m", "load_support": "1", "friction_coefficient": "1", "leakage": "m^3/s",
@@ -72,8 +71,8 @@ def balances(scenario, values) -> dict:
     """OUTPUTS of a scenario with other `values`, {dotted key: as written}, where it rests: at the widest stable of its
     `roots`, which are those of the study equilibrium."""
     try:
-        given = kept_waves(frozen_at_start(with_values(scenario, values).scene))
-        scene = at_work(given)[0]
+        given = frozen_at_start(with_values(scenario, values).scene)
+        scene = resting(given)
         found = find(scene)
     except (ScenarioError, SceneError) as error:
         return {"failed": str(error)}

@@ -160,8 +160,8 @@ FILMS = {
 
 
 def by_hand(scenario):
-    """The same seal without heat, the numbers of its first warm state in place of liquid and coning."""
-    state = warming(scenario.scene).states[0]
+    """The same seal without heat, the numbers of the warm state it works in in place of liquid and coning."""
+    state = warming(scenario.scene).working()
     table = scenario.to_dict()
     film = {k: v for k, v in table["film"].items() if k not in ("heat", "liquid", "temperature")}
     liquid = warming(scenario.scene).at(state.rise).film

@@ -8,7 +8,9 @@ from warm_seals import ROUGH, warm_seal
 
 import sealdyn
 from sealdyn import Scenario
+from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.warm_state import at_work, warming
+from sealdyn.scene.liquid import in_numbers
 
 SPEED = 308.923278
 SMOOTH = {"film.coning": 4e-4, "run.turns": 2}
@@ -125,3 +127,44 @@ def test_a_threshold_that_no_film_reaches_is_none():
     last = found["speeds_held"][1]
     assert warming(warm_seal(SMOOTH, shaft__speed=0.99 * last).scene).states
     assert not warming(warm_seal(SMOOTH, shaft__speed=1.01 * last).scene).states
+
+
+# Studies that compute with the film's own numbers, and a seal of each whose liquid may be given by name.
+BY_NAME = (
+    ("stability", "fmr_reference", {"confirm": 0}),
+    ("equilibrium", "lebeck_elastic", {"points": 5}),
+    ("load-support", "run_in", {"vary": "contact.roughness=0.1:0.4um:2"}),
+    ("campbell", "fms_reference", {"points": 9}),
+)
+
+
+def _flat(value) -> list[float]:
+    if isinstance(value, dict):
+        value = list(value.values())
+    if isinstance(value, list):
+        return [number for one in value for number in _flat(one)]
+    return [float(value)] if isinstance(value, int | float) else []
+
+
+@pytest.mark.parametrize("name, seal, settings", BY_NAME, ids=[row[0] for row in BY_NAME])
+def test_a_liquid_by_name_is_its_numbers(name, seal, settings):
+    tables = sealdyn.example(seal).to_dict()
+    own = {k: v for k, v in tables["film"].items() if k not in ("viscosity", "density", "specific_heat")}
+    named = Scenario.from_dict(tables | {"film": own | {"liquid": "water", "temperature": "40 degC"}}, seal)
+    film = in_numbers(named.scene.film)
+    numbers = {key: getattr(film, key) for key in ("viscosity", "density", "specific_heat", "vapour_pressure")}
+    plain = Scenario.from_dict(tables | {"film": own | numbers}, seal)
+    by_name, by_numbers = (sealdyn.study(name, scenario, **settings).answer for scenario in (named, plain))
+    for key, value in by_numbers.items():
+        if isinstance(value, list) and value and key not in ("verdict", "notes", "tables", "panels"):
+            # By a formula, or by the film that it is of.
+            assert _flat(by_name[key]) == pytest.approx(_flat(value), rel=1e-8, nan_ok=True), key
+
+
+def test_a_seal_that_starts_from_rest_has_the_warm_states_of_its_speeds():
+    """The state of a shaft that stands, without heat, is none to look from."""
+    scenario = sealdyn.example("pump_seal")
+    ramp = {"time": [0.0, 1.0], "value": [0.0, 300.0]}
+    rising = scenario.with_({"shaft.speed": ramp, "run.turns": 1})
+    found = Model(rising.scene).at_speed(300.0).heat
+    assert found.rise == pytest.approx(Model(scenario.with_({"shaft.speed": 300.0}).scene).heat.rise, rel=1e-6)

@@ -12,6 +12,7 @@ from ...analysis import quasi_static
 from ...answers import Answer, Axis, Level, Panel, Series, Table
 from ...closed_form import ludwig_allen as closed
 from ...dynamics.model import Model
+from ...dynamics.warm_state import at_work
 from ...numerics.piecewise_linear import initially
 from ...status import Status
 from .. import Info
@@ -57,7 +58,7 @@ class Settings:
 
 def run(scenario, settings, tools) -> Answer:
     """Closed form, static root, quasi-static and released films over the force ratio."""
-    scene = scenario.scene
+    scene = at_work(scenario.scene)[0]
     ring = free.ring_of(scene)
     how = {"turns": settings.turns, "last": settings.last, "accuracy": settings.accuracy}
     ratios, starts, inertias = (

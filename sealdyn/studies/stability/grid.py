@@ -99,6 +99,7 @@ class Grid:
         own = film.coefficients if name == "linear" else "radial"
         if (
             film.gas is not None
+            or film.liquid is not None
             or film.clearance is None
             or not isinstance(own, str)
             or film.tilt_radius != "local"
@@ -205,6 +206,9 @@ def _open(given, clearance):
     if given("film.coning_per_kelvin"):
         warmer = given("film.temperature") - given("film.coning_reference_temperature")
         slope = slope + given("film.coning_per_kelvin") * warmer
+    if given("film.coning_per_pressure"):
+        sealed = np.abs(np.subtract(given("film.outer_pressure"), given("film.inner_pressure")))
+        slope = slope + given("film.coning_per_pressure") * (sealed - given("film.coning_reference_pressure"))
     outer = gap + slope * np.subtract(r_o, r_i)
     # Rough faces are closed where all their asperities are flat.
     lowest = np.multiply(-HALF_HEIGHT, given("contact.roughness")) if given.scene.contact else np.multiply(floor, gap)
