@@ -127,7 +127,7 @@ def completed(line: str, shell="bash") -> list[str]:
 
 
 @pytest.mark.parametrize(("line", "offered"), [
-    ("sealdyn study ", study_names()), ("sealdyn study st", ["stability", "steady-state"]),
+    ("sealdyn study ", study_names()), ("sealdyn study st", ["stability", "steady-state", "stribeck"]),
     ("sealdyn new ", kinds()), ("sealdyn new fms", ["fms", "fmsr"]), ("sealdyn validate ", source_names()),
     ("sealdyn plot a.h5 --kind ", [*CHARTS]), ("sealdyn run a.toml --no", ["--no-plot"]),
 ])  # fmt: skip
