@@ -282,11 +282,11 @@ def test_a_run_is_interrupted_while_it_is_done_once_more(tmp_path):
 
 
 @pytest.mark.slow
-def test_killed_at_twenty_random_instants(tmp_path):
-    """One run killed twenty times, each time continued; the archive is readable after every kill."""
+def test_killed_at_random_instants(tmp_path):
+    """One run killed eight times, each time continued; the archive is readable after every kill."""
     archive, chance = tmp_path / "outputs" / "fmr_reference.h5", random.Random(1989)
     reached = [0]
-    for kill in range(20):
+    for kill in range(8):
         process = started("run", REFERENCE, *LONGEST, "--no-plot", *["--continue"] * (reached[-1] > 0), cwd=tmp_path)
         # A quarter of them while the program starts or takes over, the others while it writes.
         if kill % 4:
@@ -305,7 +305,7 @@ def test_killed_at_twenty_random_instants(tmp_path):
                 assert len(values) == shown["rows"] and (values == values).all()
             at, pressures = (field(partial_path(archive), name) for name in ("field_time", "pressure"))
             assert at[-1] <= values[-1] and (pressures == pressures).all()
-    assert reached == sorted(reached) and len(set(reached)) > 10
+    assert reached == sorted(reached) and len(set(reached)) > 4
     assert finished(started("run", REFERENCE, *LONGEST, "--no-plot", "--continue", cwd=tmp_path)).code == 0
     whole = tmp_path / "whole.h5"
     assert finished(started("run", REFERENCE, *LONGEST, "--no-plot", "--out", whole, cwd=tmp_path)).code == 0
