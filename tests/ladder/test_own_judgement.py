@@ -24,7 +24,6 @@ def errors(kind, number, seed=SEED):
         ("gas_pads", 3),
         ("liquid_waves", 2),
         ("gas_continued", 4),
-        pytest.param("wavy_rub", 3, marks=pytest.mark.slow),
         pytest.param("torn_continued", 3, marks=pytest.mark.slow),
     ],
 )
