@@ -10,7 +10,7 @@ import pytest
 
 from sealdyn import kernel_cache, terminal
 
-# Of those that ship one with rough faces that are warm: all take many minutes.
+# One of those that ship, with rough faces that are warm: compiling all takes many minutes.
 RUNS = ("pump_seal",)
 COUNT = """
 import json, sys

@@ -18,7 +18,7 @@ from sealdyn.archive import ArchiveError, column, field, partial_path, read_info
 
 # Both rings' forcing, no sample beyond need: seconds of solving.
 LONG = settings({"run.turns": 15000, "run.samples_per_turn": 8})
-# Three times what was enough for being killed twenty times on the way: a faster machine is done before.
+# Three times what is enough for being killed eight times on the way: a faster machine is done before.
 LONGEST = settings({"run.turns": 45000, "run.samples_per_turn": 4})
 SCALES = {"rotor_z": 1e-5, "rotor_tilt_x": 1e-5 / 0.04, "rotor_tilt_y": 1e-5 / 0.04, "h_min": 1e-5, "time": 1.0}
 PRESSURE = 5e5

@@ -113,7 +113,7 @@ def agree(model):
     return [len(found) for found, _ in both]
 
 
-@pytest.mark.parametrize("seals", [10, pytest.param(50, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("seals", [10, pytest.param(300, marks=pytest.mark.slow)])
 def test_all_at_once_finds_what_one_by_one_finds(seals):
     draw = np.random.default_rng(2026)
     counts = np.sum([agree(drawn_model(draw)) for _ in range(seals)], axis=0)
