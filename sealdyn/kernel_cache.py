@@ -4,7 +4,7 @@ numba keeps a kernel until the file it stands in changes; it does not see that a
 has changed, and would go on with the old one.  So the folder's name is a digest of all these files, and kernels of
 other sources stand in folders of their own.  Kernels of other versions of Python and of other processors need no care:
 numba keeps them apart.  Nor does it matter whether a kernel was compiled in this process or loaded: no kernel uses
-fast-math, so both have the same bits (tests/unit/test_equal_bits.py).
+fast-math, so both have the same bits (tests/benchmark/equal_bits.py).
 """
 
 import contextlib

@@ -33,6 +33,10 @@ if sys.dont_write_bytecode:
     os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
     os.environ["PYTHONPYCACHEPREFIX"] = sys.pycache_prefix
 
+# Matrices here are small: threads of BLAS made some cases dearer by half and none quicker.
+for name in ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"):
+    os.environ.setdefault(name, "1")
+
 # Stale kernels are dropped by this import: once, before several processes begin to compile new ones.
 import sealdyn  # noqa: E402, F401
 

@@ -1,10 +1,6 @@
-"""A run has the same bits whether its kernels were just compiled or loaded from disk, in whatever order they are first
-used, and with whatever vector unit they are compiled for."""
+"""What equal bits rest on; runs are compared by `python tests/benchmark/equal_bits.py`, thrice in `.ci/run`."""
 
 import ast
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -12,54 +8,7 @@ import pytest
 from sealdyn.numerics import kernel
 
 ROOT = Path(__file__).parents[2]
-SCENARIOS = ROOT / "scenarios"
 DECORATORS = {"njit", "cfunc", "partial", *(name for name in vars(kernel) if name.endswith(("_kernel", "c_function")))}
-# Scene -> what shortens it.
-SCENES = {
-    "fms_reference": "run.turns=3", "rub": "run.turns=3", "massless_ring": "run.turns=2",
-    "fmsr_both_flexible": "run.turns=3", "hang_up": "run.turns=3", "ludwig_allen": "run.turns=1",
-    "squeeze": "run.duration=0.5", "pressure_step": "run.turns=3",
-}  # fmt: skip
-RUN = """
-import hashlib, sys
-from pathlib import Path
-import h5py, sealdyn
-
-folder, *scenes = sys.argv[1:]
-for path, short in zip(scenes[::2], scenes[1::2]):
-    archive = Path(folder) / (Path(path).stem + ".h5")
-    sealdyn.simulate(sealdyn.read_scenario(path, [short]), archive)
-    digest = hashlib.sha256()
-    with h5py.File(archive) as file:
-        series = []
-        file.visititems(lambda name, item: series.append(name) if isinstance(item, h5py.Dataset) else None)
-        for name in sorted(n for n in series if file[n].dtype.kind == "f"):
-            digest.update(name.encode() + file[name][()].tobytes())
-    print(Path(path).stem, len(series), digest.hexdigest())
-"""
-
-
-def bits(scenes, folder, cache, **environment):
-    """Scene -> digest of all that its archive holds in floating point, from a process of its own."""
-    asked = [word for scene in scenes for word in (str(SCENARIOS / f"{scene}.toml"), SCENES[scene])]
-    done = subprocess.run(
-        [sys.executable, "-c", RUN, str(folder), *asked],
-        env=os.environ | {"NUMBA_CACHE_DIR": str(cache)} | environment,
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-    )
-    assert done.returncode == 0, done.stderr
-    return dict(line.split(" ", 1) for line in done.stdout.splitlines())
-
-
-@pytest.mark.slow
-def test_compiled_loaded_and_on_another_vector_unit(tmp_path):
-    compiled = bits(SCENES, tmp_path, tmp_path / "kernels")
-    assert compiled.keys() == SCENES.keys()
-    assert bits(reversed(SCENES), tmp_path, tmp_path / "kernels") == compiled
-    # The plainest processor of this machine's kind: with fast-math its sums were others.
-    assert bits(reversed(SCENES), tmp_path, tmp_path / "plain", NUMBA_CPU_NAME="generic") == compiled
 
 
 @pytest.mark.core
