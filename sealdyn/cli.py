@@ -207,6 +207,7 @@ def _large(file, scenario, yes: bool) -> bool:
 
 def _check_resumable(out, scenario):
     from .archive import partial_path, read_info
+    from .simulation.simulate import going_on
 
     source = partial_path(out) if partial_path(out).exists() else out
     if not source.exists():
@@ -219,7 +220,8 @@ def _check_resumable(out, scenario):
         [(tables.get(name) or {}).get("motion") for name in ("shaft", "housing")]
         for tables in (info["resolved"], scenario.resolved())
     )
-    if info["scenario"] != scenario.text or list(info.get("overrides", [])) != list(scenario.overrides) or held != now:
+    asked = list(going_on(scenario, out).overrides)
+    if info["scenario"] != scenario.text or list(info.get("overrides", [])) != asked or held != now:
         line = f"{source}: was made from another scenario text or other --set; run without --continue"
         raise Stop(Status.INVALID, line)
 

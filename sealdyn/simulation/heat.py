@@ -22,8 +22,9 @@ ANOTHER = 0.05
 COOLINGS = (0.5, 2.0)
 
 
-def heat_of(scene, state: WarmState | None) -> dict | None:
-    """The numbers of a warm state of a scene with `[film.heat]`, SI; None without a state."""
+def heat_of(scene, state: WarmState | None, friction: float | None = None) -> dict | None:
+    """The numbers of a warm state of a scene with `[film.heat]`, SI, beside the mean `friction` (W) of a run; None
+    without a state."""
     if state is None:
         return None
     found = warming(scene)
@@ -36,6 +37,7 @@ def heat_of(scene, state: WarmState | None) -> dict | None:
         "viscosity": state.viscosity,
         "power": state.power,
         "contact_power": state.contact_power,
+        "friction": {"counted": counted(state), "run": friction},
         "shares": {
             **{name: state.rise / ring.resistance / total for name, ring in found.rings.items()},
             "leakage": state.carried * state.rise / total,
@@ -89,6 +91,16 @@ def boiling_radius(found: Warming, state: WarmState, times: float = 1.0) -> floa
     return float(boils[-1] if outer >= inner else boils[0])
 
 
+def counted(state: WarmState) -> float:
+    """Friction (W) of film and asperities that a warm state counts."""
+    return state.power - state.flow_power
+
+
+def is_another(friction: float, aligned: float) -> bool:
+    """Whether the mean `friction` (W; nan: not known) of a run is another than the `aligned` film's."""
+    return aligned > 0.0 and abs(friction / aligned - 1.0) > ANOTHER
+
+
 def heat_cautions(scene, state: WarmState, friction: float = math.nan) -> list[Caution]:
     """Where the warm state leaves what it is valid for, and where the mean `friction` (W) of a run is another."""
     found, words = warming(scene), []
@@ -104,10 +116,8 @@ def heat_cautions(scene, state: WarmState, friction: float = math.nan) -> list[C
     ):
         names = [name for name, ring in found.rings.items() if getattr(ring, holds)]
         words += [f"{said} ({' and '.join(names)})"] if names else []
-    expected = state.power - state.flow_power
-    if expected > 0.0 and abs(friction / expected - 1.0) > ANOTHER:
-        factor = film.heat.friction * friction / expected
-        words.append(f"the run makes {friction:.4g} W, {expected:.4g} W are counted: film.heat.friction = {factor:.4g}")
+    if is_another(friction, counted(state)):
+        words.append(f"the run makes {friction:.4g} W by friction, {counted(state):.4g} W are counted")
     if len(breaks(scene)) > 1:
         words.append("temperature and coning stay those of the start, though loads change: study warm-up follows them")
     share = state.carried * state.rise / state.power if state.power else 0.0

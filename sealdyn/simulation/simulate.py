@@ -20,7 +20,7 @@ from ..archive import ArchiveWriter, only_writer, partial_path
 from ..dynamics.extrema import H_LEG, H_RADIUS, H_TAU, H_THETA, H
 from ..dynamics.tally import Tally
 from ..kernel_cache import solvers_digest
-from ..scenario.reader import Scenario
+from ..scenario.reader import Scenario, with_values
 from ..scene.radial import RadialScene
 from ..solvers.contract import Status
 from ..solvers.integrate import Outcome, solve
@@ -29,8 +29,11 @@ from .certificate import TrialRun, certificate, first_steps, judgement, next_pla
 from .result import Result, plain
 from .selection import Plan, Start, prepare_run, set_start
 from .sinks import ArchiveSink, RadialSink, archived_series
-from .summary import parts
+from .summary import parts, settled_friction
 from .verification_run import Comparison, ProgressSink, RadialComparison, price
+
+# By which the friction of the aligned film is counted where the run's is another.
+FRICTION = "film.heat.friction"
 
 
 def simulate(
@@ -56,11 +59,26 @@ def simulate(
     """
     out = Path(out) if out else Path("outputs") / f"{archive.file_stem(scenario.name)}.h5"
     with only_writer(out) as out:
-        return _simulate(scenario, out, progress, stop, resume, allow_large)
+        begun = going_on(scenario, out) if resume else scenario
+        result, friction = _simulate(begun, out, progress, stop, resume, allow_large)
+        if friction is not None and begun is scenario:
+            warmer = with_values(scenario, {FRICTION: friction})
+            result, _ = _simulate(warmer, out, progress, stop, False, allow_large)
+        return result
 
 
-def _simulate(scenario, out, progress, stop, resume, allow_large) -> Result:
-    """The same, while nobody else writes there."""
+def going_on(scenario: Scenario, out: Path) -> Scenario:
+    """The scenario that an interrupted run goes on with: where it was done once more with its own friction, that."""
+    source = archive.partial_path(out) if archive.partial_path(out).exists() else out
+    more = list(archive.read_info(source).get("overrides", ()))[len(scenario.overrides) :] if source.exists() else []
+    if len(more) != 1 or not str(more[0]).startswith(f"{FRICTION}="):
+        return scenario
+    return with_values(scenario, {FRICTION: float(str(more[0]).partition("=")[2])})
+
+
+def _simulate(scenario, out, progress, stop, resume, allow_large) -> tuple[Result, float | None]:
+    """The same, while nobody else writes there; and the factor of the aligned film's friction by which a settled run
+    would have the heat of its own."""
     begun = clock.perf_counter()
     run, plan = prepare_run(scenario, allow_large)
     tries = []
@@ -124,7 +142,19 @@ def _simulate(scenario, out, progress, stop, resume, allow_large) -> Result:
         writer.events(_events(run, outcome))
     path = writer.finish(str(outcome.status), outcome.message, json.loads(json.dumps(summary)))
     summary["archive"] = str(path)
-    return Result(str(outcome.status), outcome.message, summary, path)
+    return Result(str(outcome.status), outcome.message, summary, path), _own_friction(run, outcome, sink.tally)
+
+
+def _own_friction(run, outcome, tally) -> float | None:
+    """The factor of the aligned film's friction that is a run's; None where the warm state counts that, or the run did
+    not end, or takes no heat."""
+    if tally is None or run.model.heat is None or outcome.status not in (Status.OK, Status.INACCURATE):
+        return None
+    from .heat import counted, is_another
+
+    friction, aligned = settled_friction(run.model, tally), counted(run.model.heat)
+    factor = run.model.given.film.heat.friction
+    return factor * friction / aligned if is_another(friction, aligned) else None
 
 
 def _solve_options(trial: TrialRun | None) -> dict:
@@ -146,13 +176,15 @@ def simulate_in_memory(scenario, speeds: bool = False) -> dict:
     return {**summary, "wall_time": clock.perf_counter() - begun}
 
 
-def in_memory(scenario, speeds: bool = False, lowest: bool = True) -> dict:
-    """The same, as its `parts` (summary.py)."""
+def in_memory(scenario, speeds: bool = False, lowest: bool = True, again: bool = False) -> dict:
+    """The same, as its `parts` (summary.py); `again`: with the friction of a run before."""
     run, plan = prepare_run(scenario, lowest=lowest)
     sink, tally = ProgressSink(run), None if isinstance(scenario.scene, RadialScene) else Tally(run.model)
     trial, errors = first_steps(run, plan)
     outcome = solve(run, plan.method, run.model.accuracy, sink, errors=errors, tally=tally, **_solve_options(trial))
     run.contacts.tell(sink.log, end=(run.end_time(outcome.segment, outcome.tau), outcome.y))
+    if not again and (friction := _own_friction(run, outcome, tally)) is not None:
+        return in_memory(with_values(scenario, {FRICTION: friction}), speeds, lowest, again=True)
     return parts(scenario, run, _completed_plan(plan, trial, outcome), outcome, tally, speeds)
 
 

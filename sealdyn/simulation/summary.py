@@ -97,7 +97,7 @@ def parts(scenario, run, plan, outcome, tally, speeds: bool = True) -> dict:
             "max_power": tally.most("friction_power"),
             "temperature_rise": _temperature_rise(model, tally),
         },
-        "heat": lambda: None if model.heat is None else _heat(model),
+        "heat": lambda: None if model.heat is None else _heat(model, tally),
         "contact": _contact(run, outcome, tally),
         "secondary_seal": _secondary_seal(run),
         "film": _film(model, at, linear, tally, failed),
@@ -194,9 +194,7 @@ def _cautions(scenario, run, outcome, tally) -> list[Caution]:
     if model.heat is not None:
         from .heat import heat_cautions
 
-        constant = not isinstance(model.given.shaft.speed, PiecewiseLinear)
-        friction = tally.mean("friction_power") if constant else math.nan
-        warm = heat_cautions(model.given, model.heat, friction)
+        warm = heat_cautions(model.given, model.heat, settled_friction(model, tally))
     return [*run.cautions, *energy, *_blown_open(model, tally), *found, *warm]
 
 
@@ -289,11 +287,16 @@ def _leakage(model, tally):
     }
 
 
-def _heat(model):
+def _heat(model, tally):
     # Loaded only where a ring takes heat.
     from .heat import heat_of
 
-    return heat_of(model.given, model.heat)
+    return heat_of(model.given, model.heat, settled_friction(model, tally))
+
+
+def settled_friction(model, tally):
+    """Mean friction (W) of a run of one speed, which its heat may be compared with; of others nan."""
+    return math.nan if isinstance(model.given.shaft.speed, PiecewiseLinear) else tally.mean("friction_power")
 
 
 def _temperature_rise(model, tally):

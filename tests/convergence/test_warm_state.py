@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -209,3 +210,26 @@ def test_a_slow_eigenvalue_needs_every_time_constant():
     assert state.slow is None and state.stable
     (whole,) = warming(scene_of()).states
     assert replace(state, slow=whole.slow, stable=whole.stable) == whole
+
+
+def test_a_run_that_rubs_more_than_the_aligned_film_is_done_again_with_its_friction(tmp_path):
+    """A stator too heavy to follow; a run broken off while it is done again goes on to the same end."""
+    heavy = {"stator.transverse_inertia": 2e-2, "film.coning": 3e-3, "run.turns": 12, "run.start": "steady"}
+    seal, times = warm_seal(heavy), [0.0]
+    whole = sealdyn.simulate(seal, tmp_path / "whole.h5")
+    counted, run = (whole.summary["heat"]["friction"][key] for key in ("counted", "run"))
+    assert counted == pytest.approx(run, rel=2e-3)
+    factor = sealdyn.read_scenario(tmp_path / "whole.h5").scene.film.heat.friction
+    assert 1.05 < factor < 1.06
+
+    def stop():
+        again = any(then < before for before, then in pairwise(times))
+        return again and 0.6 < times[-1] / max(times) < 0.9
+
+    broken = sealdyn.simulate(seal, tmp_path / "broken.h5", progress=lambda t, end: times.append(t), stop=stop)
+    assert broken.status == "interrupted"
+    assert sealdyn.read_scenario(broken.archive).scene.film.heat.friction == factor
+    done = sealdyn.simulate(seal, tmp_path / "broken.h5", resume=True)
+    assert done.status == whole.status
+    assert done.summary["heat"]["friction"] == whole.summary["heat"]["friction"]
+    assert done.summary["h_min"] == whole.summary["h_min"]
