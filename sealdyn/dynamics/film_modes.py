@@ -24,6 +24,8 @@ EXACT, ITERATIONS, CONVERGED, NEAR = 8, 8, 1e-10, 0.05
 # Beyond so many vectors of the basis only those modes are taken up: fine cells have hundreds that die within a fraction
 # of their period, a crowd that rounding stirs.
 CROWD = 100
+# Error of an eigenvalue, as a share; what is a rounding of the largest.
+STORED, ROUNDING = 1e-8, 1e-15
 # Frequencies of the forced motion at which the residual is watched, over the reach.
 WATCHED = np.geomspace(1e-10, 1.0, 41)
 
@@ -240,6 +242,83 @@ def _exact(linear, values, shapes) -> tuple[np.ndarray, np.ndarray]:
             values[partner], shapes[:, partner] = np.conj(p), q.conj()
             values[k], shapes[:, k] = p, q
     return values, shapes
+
+
+# --- Tilts of a film that is alike all round, over the shaft speed -------------------------------------
+
+# What matrices may differ by from what is linear in the speed, or alike in all directions, as a share; between which
+# speeds they are looked at, in the reference speed.
+LINEAR, SPEEDS = 1e-9, (0.0, 100.0, 1.0)
+
+
+def tilt_pencil(linear) -> tuple[np.ndarray, np.ndarray] | None:
+    """Complex matrices (N, N) of `left y = p right y` on y = (tilt_x + i tilt_y of each floating ring, its rates,
+    cosine + i sine of the film's unknowns); None of a `LinearScene` that is not alike in all directions.
+
+    **Source** what commutes with a turn by a sector is [[a, -b], [b, a]] on each such pair, and so is a + i b."""
+    film, gap, n = linear.film, linear.gap, len(linear.mass)
+    if film.combinations is None or linear.rest is not None:
+        return None
+    few, (slow_k, slow_d), (angles, cells) = film.few, film.slow, film.around
+    kinds = len(film.scales) // (angles * cells)
+    each = len(few.scales) // (3 * kinds)
+    cosines = (each * (3 * np.arange(kinds)[:, None] + 1) + np.arange(each)).ravel()
+    tilts, waves = (np.arange(1, n, 3), np.arange(2, n, 3)), (cosines, cosines + each)
+    alike = []
+
+    def turning(matrix, rows, columns):
+        parts = [[matrix[np.ix_(row, column)] for column in columns] for row in rows]
+        apart = np.abs(parts[0][0] - parts[1][1]).max() + np.abs(parts[1][0] + parts[0][1]).max()
+        alike.append(apart <= LINEAR * np.abs(matrix).max())
+        return parts[0][0] + 1j * parts[1][0]
+
+    stiffness = linear.stiffness - gap.T @ (slow_k + film.force_by_gap) @ gap
+    damping = linear.damping - gap.T @ (slow_d + film.force_by_gap_rate) @ gap
+    one, none = np.eye(n // 3), np.zeros((n // 3, n // 3))
+    pushed = [turning(by @ gap, waves, tilts) for by in (few.by_gap, few.by_gap_rate)]
+    pushes = turning(gap.T @ few.force_by_x, tilts, waves)
+    left = np.block([
+        [none, one, np.zeros_like(pushes)],
+        [-turning(stiffness, tilts, tilts), -turning(damping, tilts, tilts), pushes],
+        [-pushed[0], -pushed[1], -turning(few.by_x.toarray(), waves, waves)],
+    ])  # fmt: skip
+    right = block_diag(one, linear.mass[np.ix_(tilts[0], tilts[0])], turning(few.by_rate.toarray(), waves, waves))
+    return (left, right) if all(alike) else None
+
+
+def tilts_over_speed(at_speed, reference: float, direction: float = 1.0):
+    """The function `values` of stability_thresholds.py of a film that stores, where the matrices of the tilts are
+    linear in the speed: `at_speed(w)` gives the LinearScene, `reference` a speed (rad/s, without sign), `direction` as
+    of `one_by_one`.  None where they are not, or at such a speed there is no film.  Modes in which rings hardly move,
+    or which die at once, are among them."""
+    try:
+        found = [tilt_pencil(at_speed(direction * share * reference)) for share in SPEEDS]
+    except SceneError:
+        return None
+    if any(pencil is None for pencil in found):
+        return None
+    ends = []
+    for first, last, between in zip(*found, strict=True):
+        slope = (last - first) / SPEEDS[1]
+        if np.any(np.abs(first + slope - between).max(axis=1) > LINEAR * np.abs(between).max(axis=1)):
+            return None
+        ends.append((first, slope / reference))
+
+    def values(speeds):
+        left, right = (still + np.asarray(speeds)[:, None, None] * by_speed for still, by_speed in ends)
+        # 1/(p - c) of an eigenvalue p: of those without end zero.
+        inverse = np.linalg.eigvals(np.linalg.solve(left - reference * right, right))
+        with np.errstate(all="ignore"):
+            p = reference + 1.0 / np.where(np.abs(inverse) > ROUNDING * np.abs(inverse).max(), inverse, np.nan)
+        p = p if direction > 0.0 else p.conj()
+        return p, errors_of(p)
+
+    return values
+
+
+def errors_of(values) -> np.ndarray:
+    """Bounds on the errors of eigenvalues (..., m) (1/s) of rings and a film that stores."""
+    return STORED * np.abs(values) + 1e-15 * np.nanmax(np.abs(values), axis=-1, initial=0.0, keepdims=True)
 
 
 def _unsettled(p, left) -> SceneError:

@@ -144,9 +144,23 @@ def whirl_over_speed(model, interval):
     direction = -1.0 if linear.rings[ROTOR].spin < 0.0 else 1.0
     whirl = _whirl(linear) if linear_in_speed(model, interval) else None
     if whirl is None:
-        return one_by_one(lambda w: model.linear_scene(interval, speed=w), direction), None
+        return _whirl_of_matrices(model, interval, direction, linear), None
     whirl = whirl if direction > 0.0 else whirl.mirrored()
     return all_at_once(whirl), whirl
+
+
+def _whirl_of_matrices(model, interval, direction, linear):
+    """The function `values` of a scene whose matrices are not those of a Whirl."""
+
+    def at_speed(w):
+        return model.linear_scene(interval, speed=w)
+
+    found = None
+    if linear.film is not None:
+        from .film_modes import tilts_over_speed
+
+        found = tilts_over_speed(at_speed, abs(linear.rings[ROTOR].spin) or model.reference_rate, direction)
+    return found or one_by_one(at_speed, direction)
 
 
 # Place of the tilts among LinearScene's motions.

@@ -15,7 +15,7 @@ from .characteristic import roots
 QUARTER_TURN = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 # An eigenvalue whose imaginary part is below this share of it does not oscillate; how far from the same in all
 # directions, as a share, the matrices may be by rounding; how well a film that stores knows its eigenvalues, likewise.
-STILL, ISOTROPIC, STORED = 1e-9, 1e-8, 1e-8
+STILL, ISOTROPIC = 1e-9, 1e-8
 MOTIONS = ("axial", "tilt")
 
 
@@ -234,7 +234,9 @@ class LinearScene:
         each eigenvalue minds (backward error times condition number); and of a film that stores its answers' own.
         **Source** Stewart & Sun (1990), Matrix Perturbation Theory, IV.2."""
         if self.film is not None:
-            return STORED * np.abs(values) + 1e-15 * np.max(np.abs(values), initial=0.0)
+            from .film_modes import errors_of
+
+            return errors_of(values)
         from scipy.linalg import eig
 
         from .film_modes import even

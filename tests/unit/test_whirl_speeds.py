@@ -3,18 +3,22 @@ root finder, over random seals."""
 
 from dataclasses import replace
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
 from scenes import SUPPORT, film, fmr, fms, fmsr, ring
 from scipy.optimize import brentq
 
+import sealdyn
 from sealdyn.dynamics import linearisation, modes, stability_thresholds
 from sealdyn.dynamics.model import Model
 from sealdyn.numerics.piecewise_linear import crossing
 from sealdyn.scene.film import Coefficients
 from sealdyn.scene.rings import Rotor, Stator
 from sealdyn.simulation import stability
+
+SCENARIOS = Path(__file__).parents[2] / "scenarios"
 
 
 def tilts(at_speed, w):
@@ -130,6 +134,32 @@ def test_of_the_radial_film_too(scene):
         patch.setattr(Model, "linear_scene", lambda self, *a, **k: asked.append(k.get("speed")) or one(self, *a, **k))
         stability.critical_speed(model)
     assert not [w for w in asked if w is not None]
+
+
+RINGS = {"axial_stiffness": 1e5, "axial_damping": 10.0, "radius": 0.04}
+STORING = {
+    "as it is": {}, "the other way": {"shaft.speed": -800.0}, "from rest": {"shaft.speed": 0.0, "run.duration": 0.1},
+    "counter-rotating": {"stator.speed": -300.0},
+    "rough": {"contact.roughness": 1e-6, "contact.compressive_strength": 1e9},
+    "springs": {"rotor.support": RINGS, "rotor.mass": 0.5, "rotor.transverse_inertia": 8e-4,
+                "rotor.polar_inertia": 1.5e-3},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("changes", STORING.values(), ids=STORING)
+def test_of_a_film_that_stores(changes):
+    """Every mode that a speed of its own gives is among those of all speeds, and none grows faster than they."""
+    model = Model(sealdyn.read_scenario(SCENARIOS / "gas_reynolds_reference.toml").with_(changes).scene)
+    (values, whirl), direction = linearisation.whirl_over_speed(model, None), np.sign(model.scene.shaft.speed) or 1.0
+    assert whirl is None and values.__module__ == "sealdyn.dynamics.film_modes"
+    alone = stability_thresholds.one_by_one(lambda w: model.linear_scene(speed=w), direction)
+    speeds = [3.0, 400.0, 2.5e4]
+    for found, expected in zip(values(speeds)[0], alone(speeds)[0], strict=True):
+        expected = expected[~np.isnan(expected)]
+        assert len(expected) > 1
+        apart = np.abs(found[None, :] - expected[:, None]).min(axis=1)
+        assert np.all(apart < 1e-7 * np.abs(expected) + 1e-12 * np.abs(expected).max())
+        assert np.nanmax(found.real) == pytest.approx(expected.real.max(), rel=1e-7, abs=1e-9 * np.abs(expected).max())
 
 
 def test_a_floored_film_is_linearised_at_every_speed():
