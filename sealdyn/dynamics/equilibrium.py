@@ -63,47 +63,19 @@ class ClosingForce:
 
 
 def settle(scene: Scene, opening_force) -> tuple[float, ClosingForce, list[Equilibrium], str]:
-    """Design clearance, closing force, all equilibria found and a sentence, from what the scene gives.
+    """Design clearance, `closing_law`, all equilibria found and a sentence, from what the scene gives.
 
-    `opening_force(clearance, p_i, p_o)` is that of film and faces.  Two of clearance, balance ratio and spring
-    force decide the third; the clearance alone means: whatever holds it, counted as hydraulic closing; all three
-    (no scenario has them): the closing force is as given, whether or not it balances at the clearance.
-    Raises SceneError if there is no stable equilibrium.
+    `opening_force(clearance, p_i, p_o)` is that of film and faces.  Raises SceneError if there is no stable
+    equilibrium.
     """
-    film, closing = coned(scene), scene.closing
+    film, (law, said) = coned(scene), closing_law(scene, opening_force)
     inner, outer = initially(film.inner_pressure), initially(film.outer_pressure)
-    area = math.pi * (film.outer_radius**2 - film.inner_radius**2)
-    outer_is_high = outer >= inner
-    high, low = max(inner, outer), min(inner, outer)
-    balance, spring = closing.balance_ratio, closing.spring_force
-
     if film.clearance is not None:
-        force = opening_force(film.clearance, inner, outer)
-        if math.isnan(force):
-            found = f"{film.clearance:.4g} m, at which the film has no solution"
-            raise SceneError("film.clearance", found, "a clearance of the size of a film's, and a flow through it")
-        if balance is None and spring is None:
-            balance = (force / area - low) / (high - low) if high > low else 1.0
-            spring = 0.0 if high > low else force - area * low
-            said = "closing force is what holds the given clearance"
-        elif balance is None:
-            if high == low:
-                raise SceneError("closing.spring_force", "equal pressures", "balance_ratio, or a pressure difference")
-            balance = ((force - initially(spring)) / area - low) / (high - low)
-            said = "balance ratio follows from clearance and spring force"
-        elif spring is not None:
-            said = "closing force as given: the clearance is where displacements are counted from"
-        else:
-            spring = force - ClosingForce(area, balance, 0.0, outer_is_high).at(inner, outer, 0.0)
-            said = "spring force follows from clearance and balance ratio"
-        law = ClosingForce(area, balance, spring, outer_is_high)
         stiffness = film_stiffness(opening_force, film.clearance, inner, outer, STEP * film.clearance)
-        here = Equilibrium(film.clearance, stiffness, stiffness > 0)
-        return film.clearance, law, [here], said
+        return film.clearance, law, [Equilibrium(film.clearance, stiffness, stiffness > 0)], said
 
-    law = ClosingForce(area, balance, spring, outer_is_high)
     surfaces = waves_of(scene), scene.contact
-    roots = equilibria(film, opening_force, law.at(inner, outer, initially(spring)), inner, outer, *surfaces)
+    roots = equilibria(film, opening_force, law.at(inner, outer, initially(law.spring)), inner, outer, *surfaces)
     stable = [root for root in roots if root.stable]
     if not stable:
         raise SceneError(*_no_equilibrium(film, opening_force, law, inner, outer, roots, bool(scene.contact)))
@@ -114,17 +86,42 @@ def settle(scene: Scene, opening_force) -> tuple[float, ClosingForce, list[Equil
 
 
 def closing_law(scene: Scene, opening_force) -> tuple[ClosingForce, str]:
-    """The closing force of a scene, as given or what holds its clearance, and a sentence; unlike `settle`, also of one
-    without a stable equilibrium."""
-    film, closing = scene.film, scene.closing
-    if film.clearance is not None:
-        return settle(scene, opening_force)[1::2]
-    if closing.balance_ratio is None or closing.spring_force is None:
-        raise SceneError("film.clearance", "nothing", "a length, or both balance_ratio and spring_force")
+    """The closing force of a scene, as given or what holds its clearance, and a sentence; also of one without a stable
+    equilibrium.
+
+    Two of clearance, balance ratio and spring force decide the third; the clearance alone means: whatever holds it,
+    counted as hydraulic closing; all three (no scenario has them): the closing force is as given, whether or not it
+    balances at the clearance.
+    """
+    film, closing = coned(scene), scene.closing
+    inner, outer = initially(film.inner_pressure), initially(film.outer_pressure)
     area = math.pi * (film.outer_radius**2 - film.inner_radius**2)
-    outer_is_high = initially(film.outer_pressure) >= initially(film.inner_pressure)
-    law = ClosingForce(area, closing.balance_ratio, closing.spring_force, outer_is_high)
-    return law, "closing force from balance ratio and spring"
+    high, low = max(inner, outer), min(inner, outer)
+    balance, spring = closing.balance_ratio, closing.spring_force
+
+    if film.clearance is None:
+        if balance is None or spring is None:
+            raise SceneError("film.clearance", "nothing", "a length, or both balance_ratio and spring_force")
+        return ClosingForce(area, balance, spring, outer >= inner), "closing force from balance ratio and spring"
+    force = opening_force(film.clearance, inner, outer)
+    if math.isnan(force):
+        found = f"{film.clearance:.4g} m, at which the film has no solution"
+        raise SceneError("film.clearance", found, "a clearance of the size of a film's, and a flow through it")
+    if balance is None and spring is None:
+        balance = (force / area - low) / (high - low) if high > low else 1.0
+        spring = 0.0 if high > low else force - area * low
+        said = "closing force is what holds the given clearance"
+    elif balance is None:
+        if high == low:
+            raise SceneError("closing.spring_force", "equal pressures", "balance_ratio, or a pressure difference")
+        balance = ((force - initially(spring)) / area - low) / (high - low)
+        said = "balance ratio follows from clearance and spring force"
+    elif spring is not None:
+        said = "closing force as given: the clearance is where displacements are counted from"
+    else:
+        spring = force - ClosingForce(area, balance, 0.0, outer >= inner).at(inner, outer, 0.0)
+        said = "spring force follows from clearance and balance ratio"
+    return ClosingForce(area, balance, spring, outer >= inner), said
 
 
 def extent(film, waves=(), contact=None) -> tuple[float, float]:
