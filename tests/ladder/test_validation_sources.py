@@ -6,6 +6,7 @@ import pkgutil
 
 import numpy as np
 import pytest
+from command import sealdyn
 
 from sealdyn import closed_form
 from sealdyn import films as films_there_are
@@ -20,13 +21,31 @@ AROUND = math.pi * (zuk.CRUISE.outer_radius + zuk.CRUISE.inner_radius)
 
 
 @pytest.fixture(scope="module")
-def dams():
-    return zuk_1972.checks()
+def checks(tmp_path_factory):
+    """All that `sealdyn validate --json` says."""
+    answer = sealdyn("validate", "--json", cwd=tmp_path_factory.mktemp("validate"))
+    assert answer.code == 0, answer.err
+    return answer.found["checks"]
 
 
 @pytest.fixture(scope="module")
-def rings():
-    return ludwig_allen.checks()
+def dams(checks):
+    return [row for row in checks if row["source"].startswith("Zuk")]
+
+
+@pytest.fixture(scope="module")
+def rings(checks):
+    return [row for row in checks if row["source"].startswith("Ludwig & Allen")]
+
+
+def test_validate_agrees(checks):
+    assert len(checks) >= 40 and all(check["verdict"] != "FAILED" for check in checks)
+    assert {check["source"].split(" (")[0] for check in checks} == {
+        "Green",
+        "Lebeck, Teale & Pierce",
+        "Ludwig & Allen",
+        "Zuk",
+    }
 
 
 def test_sources_are_the_files_there_are():

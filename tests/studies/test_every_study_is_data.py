@@ -3,21 +3,17 @@
 import csv
 import io
 import math
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray
+from command import sealdyn as program
 
 import sealdyn
 from sealdyn.archive import answer_tables, read_study, tables_as_dataset, write_study
 from sealdyn.archive.tables import columns
 from sealdyn.report.panels import draw
 from sealdyn.studies import study_names
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "cli"))
-from command import sealdyn as program
 
 # Scenario, what is set in it, settings: seconds each.
 SMALL = {

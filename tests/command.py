@@ -15,7 +15,7 @@ import pytest
 
 from sealdyn import cli
 
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
+SCENARIOS = Path(__file__).parents[1] / "scenarios"
 REFERENCE = SCENARIOS / "fmr_reference.toml"
 
 
