@@ -126,10 +126,18 @@ def test_slow_stiffness_over_fast_is_that_of_the_loops(changes):
     slow = slope(lambda n: force(state.clearance + n * step, held(state.clearance + n * step)))
     fast = slope(lambda n: force(state.clearance + n * step, state.rise))
     warmer = 1e-4 * state.rise
-    held_loop = slope(lambda n: found.state(state.rise + n * warmer, state.clearance).power) / warmer
-    held_loop /= found.conductance + state.carried
-    # The leakage's own change with the rise is within this: it carries 0.01 % of the heat.
-    assert slow / fast == pytest.approx((1.0 - state.loop_gain) / (1.0 - held_loop), rel=5e-4)
+
+    def per_kelvin(quantity, follows):
+        """Over the heat that a kelvin takes away, the clearance following or held."""
+        rises = [state.rise + n * warmer for n in (1, -1)]
+        gaps = [found.clearance(rise, state.clearance) if follows else state.clearance for rise in rises]
+        more, less = (getattr(found.state(*at), quantity) for at in zip(rises, gaps, strict=True))
+        return (more - less) / (2.0 * warmer) / (found.conductance + state.carried)
+
+    # What the leakage carries away changes with the rise, too.
+    left, held_left = (1.0 + state.rise * per_kelvin("carried", follows) for follows in (True, False))
+    expected = (left - state.loop_gain) / (held_left - per_kelvin("power", False))
+    assert slow / fast == pytest.approx(expected, rel=1e-4)
 
 
 @pytest.mark.parametrize(
