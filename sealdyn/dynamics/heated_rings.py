@@ -7,6 +7,8 @@
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ..numerics.piecewise_linear import initially
 from ..scene.liquid import liquid_of
 from .intervals import largest_value
@@ -73,3 +75,47 @@ def heated_body(scene, name: str, cooling: float = 1.0) -> HeatedBody:
         cooled and cooled.reynolds, bool(cooled and cooled.extrapolated), found.hottest, found.at_o_ring, found.biot,
         film.outer_radius - film.inner_radius < drawn.width / 3.0, body.length > 4.0 * drawn.width, found,
     )  # fmt: skip
+
+
+class ThermalStates:
+    """What rings store: states theta (K), six of each from its drawing where all are, else one, the rise.
+
+        one state:  C rise' = heat that enters - G rise,  coning by heat = B rise
+        six a ring: tau_k theta_k' = R q - theta_k,  rise = sum R_k/R theta_k + R_0 q,
+                    coning = sum X_k/R theta_k + X_0 q
+
+    q is what enters a ring, R_0 and X_0 follow it at once; where it stays all states of the rings are the rise.
+    `content` (J/K) and `leaving` (W/K) of each state are the heat that it holds and that it gives to the liquid.
+    """
+
+    def __init__(self, rings: dict[str, HeatedBody]):
+        bodies = list(rings.values())
+        wholes = [body.whole for body in bodies if body.whole is not None]
+        self.several = len(wholes) == len(bodies)
+        if not self.several:
+            self.content = np.array([sum((body.time_constant or 0.0) / body.resistance for body in bodies)])
+            self.leaving = np.array([sum(1.0 / body.resistance for body in bodies)])
+            return
+        self.ring = np.concatenate([np.full(len(whole.resistances), k) for k, whole in enumerate(wholes)])
+        self.time = np.concatenate([whole.time_constants for whole in wholes])
+        self.resistance = np.array([whole.resistance for whole in wholes])[self.ring]
+        self.share, self.coning, self.content, self.leaving = (
+            np.concatenate([getattr(whole, name) for whole in wholes]) / self.resistance
+            for name in ("resistances", "conings", "contents", "leaving")
+        )
+        # Of each ring: (W/K) and (rad/K) over the rise of the face beyond that of its states.
+        self.immediate = np.array([1.0 / whole.immediate_resistance for whole in wholes])
+        self.immediate_coning = np.array([whole.immediate_coning for whole in wholes]) * self.immediate
+
+    def steady(self, rise: float) -> np.ndarray:
+        """The states at a rise (K) that stays."""
+        return np.full(len(self.content), rise)
+
+    def beneath(self, theta: np.ndarray) -> np.ndarray:
+        """The rise (K) of each ring's face less what follows its heat at once."""
+        return np.bincount(self.ring, self.share * theta, len(self.immediate))
+
+    def rates(self, theta: np.ndarray, rise: float) -> np.ndarray:
+        """Of theta (K/s), the faces at a rise (K)."""
+        entering = self.immediate * (rise - self.beneath(theta))
+        return (self.resistance * entering[self.ring] - theta) / self.time
