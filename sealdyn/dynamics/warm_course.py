@@ -33,9 +33,9 @@ CORRECTIONS, SAME = 40, 1e-11
 
 @dataclass(frozen=True)
 class Course:
-    """The `time` (s) of steps and the WarmState of each, the `heat` made in all (J), the share of it by which what left
-    with liquid and leakage and what the rings hold more is another heat (`residual`), and when the film closed (s),
-    None if it did not."""
+    """The `time` (s) of steps and the WarmState of each, the `heat` made in all (J), the share of it by which, at most
+    of any step, what left with liquid and leakage and what the rings hold more is not the heat made by then
+    (`residual`), and when the film closed (s), None if it did not."""
 
     time: list[float]
     states: list[WarmState]
@@ -87,7 +87,7 @@ def course(scene, times, start: WarmState, say: Callable[[float], None] = lambda
     first = whole.under(frozen_at(scene, times[0]))
     # Clearance, states of the rings, heat made and heat that left (J).
     y, kept, collapsed, near = np.array([1.0, *rings.steady(start.rise), 0.0, 0.0]), [], None, [start.rise]
-    held, damped = float(rings.content @ y[1:-2]), first.damping(start.rise, unit)
+    damped, lacking = first.damping(start.rise, unit), [0.0]
 
     def here(t):
         return whole.under(frozen_at(scene, float(t)))
@@ -124,12 +124,12 @@ def course(scene, times, start: WarmState, say: Callable[[float], None] = lambda
         for t, column in list(zip(part.t, part.y.T, strict=True))[1 if kept else 0 :]:
             clearance = max(float(column[0]), CLOSED) * unit
             found = here(min(max(t, inside[0]), inside[1]))
+            lacking.append(abs(column[-2] - column[-1] - float(rings.content @ (column[1:-2] - start.rise))))
             kept.append((float(t), film_between(rings, found, column[1:-2], clearance, start.rise)))
         y = part.y[:, -1]
         say(end / times[-1])
         if part.status != 0:
             collapsed = float(part.t[-1])
             break
-    made, left, stored = float(y[-2]), float(y[-1]), float(rings.content @ y[1:-2]) - held
-    residual = abs(made - left - stored) / max(made, RESOLVED)
-    return Course([t for t, _ in kept], [now for _, now in kept], made, residual, collapsed)
+    made = float(y[-2])
+    return Course([t for t, _ in kept], [now for _, now in kept], made, max(lacking) / max(made, RESOLVED), collapsed)
