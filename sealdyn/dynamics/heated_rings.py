@@ -95,6 +95,7 @@ class ThermalStates:
         if not self.several:
             self.content = np.array([sum((body.time_constant or 0.0) / body.resistance for body in bodies)])
             self.leaving = np.array([sum(1.0 / body.resistance for body in bodies)])
+            self.turned = sum(body.coning_per_watt / body.resistance for body in bodies)
             return
         self.ring = np.concatenate([np.full(len(whole.resistances), k) for k, whole in enumerate(wholes)])
         self.time = np.concatenate([whole.time_constants for whole in wholes])
@@ -119,3 +120,32 @@ class ThermalStates:
         """Of theta (K/s), the faces at a rise (K)."""
         entering = self.immediate * (rise - self.beneath(theta))
         return (self.resistance * entering[self.ring] - theta) / self.time
+
+    def matrix(self, squeezed: np.ndarray, heated: np.ndarray) -> np.ndarray:
+        """Rates (1/s) of clearance and theta about a warm state over small changes of these, (1 + states, the same).
+
+        `squeezed`, `heated`: slopes of the clearance's rate (m/s) and of the heat that enters the rings (W), over
+        clearance (m), rise (K) and coning by heat (rad).
+        """
+        states = len(self.content)
+        if not self.several:
+            # One state is the rise itself, and coning goes with it.
+            squeezed, heated = ([by[0], by[1] + self.turned * by[2]] for by in (squeezed, heated))
+            return np.array([squeezed, [heated[0], heated[1] - self.leaving[0]] / self.content])
+        beneath = np.zeros((len(self.immediate), 1 + states))
+        beneath[self.ring, 1 + np.arange(states)] = self.share
+        coning = np.concatenate([[0.0], self.coning]) - self.immediate_coning @ beneath
+        # The heat that enters changes as much as all rings take.
+        rise = self.immediate @ beneath + heated[2] * coning
+        rise[0] += heated[0]
+        turned = float(np.sum(self.immediate_coning))
+        rise /= float(np.sum(self.immediate)) - heated[1] - heated[2] * turned
+        coning += turned * rise
+        found = np.empty((1 + states, 1 + states))
+        found[0] = squeezed[1] * rise + squeezed[2] * coning
+        found[0, 0] += squeezed[0]
+        entering = self.immediate[:, None] * (rise - beneath)
+        found[1:] = self.resistance[:, None] * entering[self.ring]
+        found[1:, 1:] -= np.eye(states)
+        found[1:] /= self.time[:, None]
+        return found

@@ -1,6 +1,7 @@
 """What heat does to a seal, in numbers: the warm state of a scene as `run`, `check` and `equilibrium` have it."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -8,6 +9,7 @@ from ..dynamics.run_state import Caution, Concern
 from ..dynamics.warm_course import breaks
 from ..dynamics.warm_state import Warming, WarmState, warming
 from ..numerics.piecewise_linear import initially
+from ..quantities import in_words
 from ..scene.film import aligned_gaps, coned
 from ..scene.liquid import liquid_of
 
@@ -20,6 +22,8 @@ RADII = 2001
 ANOTHER = 0.05
 # Convection is known to a factor of two.
 COOLINGS = (0.5, 2.0)
+# Speeds that are looked at on the way up, and how exactly those are found at which a seal hunts or has no warm state.
+SPEEDS, ONSET, FOLD = 8, 1e-4, 1e-3
 
 
 def heat_of(scene, state: WarmState | None) -> dict | None:
@@ -43,6 +47,7 @@ def heat_of(scene, state: WarmState | None) -> dict | None:
         "loop_gain": state.loop_gain,
         "slow_eigenvalue": None if state.slow is None else [state.slow.real, state.slow.imag],
         "stable": state.stable,
+        "hunting_period": state.period,
         "boiling_radius": boiling_radius(found, state),
         "boiling_radius_hottest": boiling_radius(found, state, max(HOTTEST, _hottest(found))),
         "cold": {"clearance": cold and cold.clearance, "power": cold and cold.power, "leakage": cold and cold.leakage},
@@ -50,6 +55,57 @@ def heat_of(scene, state: WarmState | None) -> dict | None:
         "hottest": found.sealed + _hottest(found) * state.rise,
         "rings": {name: {k: v for k, v in vars(ring).items() if k != "whole"} for name, ring in found.rings.items()},
     }
+
+
+def limits_of(found: Warming, high: float) -> dict:
+    """From which shaft speeds (rad/s) up to `high` the state that continues the cold one hunts (`hunting`: `speed`,
+    `period` (s) there) and is no more (`fold`); None where it does not."""
+    # Speeds and the states there, from rest on.
+    known: list[tuple[float, WarmState | None]] = [(0.0, None)]
+
+    def look(speed) -> WarmState | None:
+        there, (_, near) = found.under(replace(found.scene, shaft=replace(found.scene.shaft, speed=speed))), known[-1]
+        return there.continued(near or there.cold_state)
+
+    fold = None
+    for speed in map(float, np.linspace(0.0, high, SPEEDS + 1)[1:]):
+        state = look(speed)
+        if state is None and known[-1][1] is not None:
+            fold = speed
+            break
+        known.append((speed, state))
+    while fold is not None and abs(fold - known[-1][0]) > FOLD * abs(fold):
+        middle = 0.5 * (known[-1][0] + fold)
+        if (state := look(middle)) is None:
+            fold = middle
+        else:
+            known.append((middle, state))
+    unstable = [k for k, (_, state) in enumerate(known) if state is not None and not state.stable]
+    if not unstable:
+        return {"hunting": None, "fold": fold}
+    speed, state = known[unstable[0]]
+    del known[unstable[0] :]
+    while abs(speed - known[-1][0]) > ONSET * abs(speed):
+        middle = 0.5 * (known[-1][0] + speed)
+        between = look(middle)
+        if between is not None and between.stable:
+            known.append((middle, between))
+        else:
+            speed, state = middle, between
+    period = state and state.period
+    return {"hunting": {"speed": speed, "period": period} if period else None, "fold": fold}
+
+
+def limits_said(limits: dict) -> str:
+    """What `limits_of` found in a sentence, "" of nothing."""
+    words, hunting = [], limits["hunting"]
+    if hunting is not None:
+        speed, period = in_words("speed", hunting["speed"]), in_words("time", hunting["period"])
+        words.append(f"from {speed} on the seal hunts, with a period of {period}")
+    if limits["fold"] is not None:
+        words.append(f"from {in_words('speed', limits['fold'])} on no warm state is left")
+    said = "; ".join(words)
+    return f"{said[0].upper()}{said[1:]}." if said else ""
 
 
 def _hottest(found: Warming) -> float:
