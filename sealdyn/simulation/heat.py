@@ -24,6 +24,8 @@ ANOTHER = 0.05
 COOLINGS = (0.5, 2.0)
 # Speeds that are looked at on the way up, and how exactly those are found at which a seal hunts or has no warm state.
 SPEEDS, ONSET, FOLD = 8, 1e-4, 1e-3
+# Share of the highest rise that the liquid's table has, beyond which it is the table that ends.
+TABLE = 0.99
 
 
 def heat_of(scene, state: WarmState | None) -> dict | None:
@@ -59,9 +61,9 @@ def heat_of(scene, state: WarmState | None) -> dict | None:
 
 def limits_of(found: Warming, high: float) -> dict:
     """From which shaft speeds (rad/s) up to `high` the state that continues the cold one hunts (`hunting`: `speed`,
-    `period` (s) there) and is no more (`fold`); None where it does not."""
+    `period` (s) there) and is no more (`fold`); None where it does not, or the liquid's table ends before."""
     # Speeds and the states there, from rest on.
-    known: list[tuple[float, WarmState | None]] = [(0.0, None)]
+    known: list[tuple[float, WarmState | None]] = [(0.0, found.cold_state)]
 
     def look(speed) -> WarmState | None:
         there, (_, near) = found.under(replace(found.scene, shaft=replace(found.scene.shaft, speed=speed))), known[-1]
@@ -80,6 +82,8 @@ def limits_of(found: Warming, high: float) -> dict:
             fold = middle
         else:
             known.append((middle, state))
+    if fold is not None and known[-1][1].rise > TABLE * found.highest:
+        fold = None
     unstable = [k for k, (_, state) in enumerate(known) if state is not None and not state.stable]
     if not unstable:
         return {"hunting": None, "fold": fold}

@@ -7,12 +7,14 @@ import numpy as np
 import pytest
 from own_warm import Seal, of_oscillation, one_temperature, slow_course, slow_root, warm
 from scipy.optimize import brentq
+from warm_seals import OIL, ROUGH, warm_seal
 
 import sealdyn
 from sealdyn.dynamics.warm_course import course
 from sealdyn.dynamics.warm_state import Warming, warming
 from sealdyn.faces.ring_coning import RingBody
 from sealdyn.faces.ring_heat import conduction, ring_heat
+from sealdyn.simulation.heat import limits_of
 
 CARBON = dict(density=1800.0, modulus=20e9, poisson=0.2, expansion=4.5e-6, conductivity=10.0, specific_heat=750.0)
 CARBIDE = dict(density=3100.0, modulus=410e9, poisson=0.16, expansion=4e-6, conductivity=125.0, specific_heat=670.0)
@@ -222,6 +224,18 @@ def test_a_warm_up_says_so_where_it_gets_there(rpm, hunts, folds):
     assert (found["hunting"] is not None, found["fold"] is not None) == (hunts, folds)
     if hunts:
         assert found["hunting"]["speed"] == pytest.approx(7408.0 * RPM, rel=0.02)
+
+
+@pytest.mark.parametrize("changes", [{"film.coning": 4e-4}, ROUGH, OIL], ids=["smooth", "rough", "oil"])
+def test_seals_pressurised_outside_neither_hunt_nor_fold(changes):
+    found = sealdyn.study("equilibrium", warm_seal(changes), points=11).answer
+    assert found["hunting"] is None and found["fold"] is None
+
+
+def test_a_fold_far_below_the_speed_is_found():
+    found = limits_of(warming(inside(6500).scene), 20 * 7935.0 * RPM)
+    assert found["fold"] == pytest.approx(7935.0 * RPM, rel=0.01)
+    assert found["hunting"]["speed"] == pytest.approx(7408.0 * RPM, rel=0.02)
 
 
 def test_a_state_that_hunts_does_not_work():
