@@ -23,7 +23,7 @@ ANOTHER = 0.05
 # Convection is known to a factor of two.
 COOLINGS = (0.5, 2.0)
 # Speeds that are looked at on the way up, and how exactly those are found at which a seal hunts or has no warm state.
-SPEEDS, ONSET, FOLD = 8, 1e-4, 1e-3
+SPEEDS, ONSET, FOLD = 4, 1e-4, 1e-3
 # Share of the highest rise that the liquid's table has, beyond which it is the table that ends.
 TABLE = 0.99
 
