@@ -1,4 +1,5 @@
-"""What a ring of a scene takes of the film's heat: numbers of its maker, or its drawing, material and cooling.
+"""What a ring of a scene takes of the film's heat, and stores: numbers of its maker, or its drawing, material and
+cooling.
 
 **Source** faces/ring_heat.py for a ring from its drawing, closed_form/ring_fin.py for its convection by speed.
 **Valid** convection at the largest speed of the scene and the temperature of the sealed liquid, whatever the speed.

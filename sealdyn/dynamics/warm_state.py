@@ -10,6 +10,9 @@ and in time, the film squeezed with the damping D,
 
     C rise' = H - (G + density specific_heat Q) rise,  C = sum time_constant/R,  D clearance' = opening - closing force
 
+or, of rings from their drawings, with the states of heated_rings.py: quick and late coning may oppose each other, and a
+seal that is pressurised inside then hunts before heat loses its balance.
+
 **Source** derived; the field is Lebeck, *Principles and Design of Mechanical Face Seals* (1991), and Brunetiere,
 Tournerie & Frene (2003).
 **Valid** liquids; walls and film of one temperature, as a film of a micrometre has it (b mu U^2/k below 1), and where
@@ -53,9 +56,9 @@ class WarmState:
     """A state in which heat balances: `rise` (K) of the faces over the sealed liquid, `clearance` (m) and `coning`
     (rad) then, `viscosity` (Pa s), heat made `power` (W), of it the asperities' `contact_power` and what the leakage
     spends `flow_power`, `carried` (W/K) by the leakage, `loop_gain` dH/d(rise) over (G + carried), `slow` the least
-    damped eigenvalue (1/s, complex; None without time constants), and whether it is `stable`; `torque` (N m) of film
-    and asperities, `excess` (N) of the opening force over the closing force, which is 0 at its clearance; `coned_by`:
-    coning by heat (rad)."""
+    damped eigenvalue of film and rings (1/s, complex; None without time constants), and whether it is `stable`;
+    `torque` (N m) of film and asperities, `excess` (N) of the opening force over the closing force, which is 0 at its
+    clearance; `coned_by`: coning by heat (rad)."""
 
     rise: float
     clearance: float

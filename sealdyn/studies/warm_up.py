@@ -69,6 +69,8 @@ def run(scenario, settings, tools) -> Answer:
         bare = next(name for name, ring in found.rings.items() if ring.time_constant is None)
         raise ScenarioError(scenario.name, f"film.heat.{bare}.time_constant", "nothing", "a time, to warm up in")
     start = found.cold_state if settings.begin == "cold" else found.working()
+    if start is None and settings.begin == "warm":
+        raise ScenarioError(scenario.name, "study.warm_up.begin", found.why_none(), '"cold"')
     if start is None:
         raise ScenarioError(scenario.name, "film", "no film at the start", 'a film that holds, or begin = "warm"')
     # Under the loads that there are when it turns fastest.

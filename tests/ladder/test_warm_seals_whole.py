@@ -246,6 +246,9 @@ def test_a_state_that_hunts_does_not_work():
     with pytest.raises(sealdyn.ScenarioError) as error:
         sealdyn.run(inside(7500))
     assert error.value.key == "film.heat"
+    with pytest.raises(sealdyn.ScenarioError) as error:
+        sealdyn.study("warm-up", inside(7500), start=0.0, begin="warm")
+    assert error.value.key == "study.warm_up.begin"
     assert sealdyn.study("equilibrium", inside(8200), points=11).answer["roots"] == []
 
 
