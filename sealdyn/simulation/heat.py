@@ -105,9 +105,9 @@ def limits_said(limits: dict) -> str:
     words, hunting = [], limits["hunting"]
     if hunting is not None:
         speed, period = in_words("speed", hunting["speed"]), in_words("time", hunting["period"])
-        words.append(f"from {speed} on the seal hunts, with a period of {period}")
+        words.append(f"at {speed} the seal begins to hunt, with a period of {period}")
     if limits["fold"] is not None:
-        words.append(f"from {in_words('speed', limits['fold'])} on no warm state is left")
+        words.append(f"at {in_words('speed', limits['fold'])} the state that it warms to from the cold is no more")
     said = "; ".join(words)
     return f"{said[0].upper()}{said[1:]}." if said else ""
 
