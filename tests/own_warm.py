@@ -150,6 +150,55 @@ def at_coning(seal, rise, coning):
     )  # fmt: skip
 
 
+def squeezed(seal, r, gap, rise):
+    """Axial damping (N s/m) of the film along the radii r (m) with film `gap` (m), at one `rise` (K)."""
+    resist = 12 * seal.viscosity(seal.temperature + rise) / (r * gap**3)
+    beside = np.trapezoid(resist * r**2 / 2, r) / np.trapezoid(resist, r)
+    return np.pi * np.trapezoid(r**2 * resist * (r**2 / 2 - beside), r)
+
+
+def slow_course(seal, state, grids, along, step, moved):
+    """Rise (K) beside that of a warm `state` over time steps (s) `along`, from a clearance that is `moved`-fold: both
+    rings by all cells of their `grids` (faces/ring_heat.py's conduction), the film squeezed; by the midpoint rule."""
+    r = np.linspace(seal.rings[0].face_inner_radius, seal.rings[0].face_outer_radius, POINTS)
+    force, per_step, r_in = closing_force(seal), 2 / step, r - r[0]
+    enter = [grid.answer(grid.flux, per_step) for grid in grids]
+    settled = [grid.answer(grid.flux) for grid in grids]
+    through = [state.rise / (grid.flux @ T + grid.immediate_resistance) for grid, T in zip(grids, settled, strict=True)]
+    cells = [q * T for q, T in zip(through, settled, strict=True)]
+    damping = squeezed(seal, r, state.clearance + state.coning * r_in, state.rise)
+    gap, guess, found = state.clearance * moved, np.ones(2), []
+    for _ in range(along):
+        own = [grid.answer(per_step * grid.capacity * T, per_step) for grid, T in zip(grids, cells, strict=True)]
+        taken = []
+        for grid, T, t in zip(grids, own, enter, strict=True):
+            taken.append((grid.flux @ T, grid.flux @ t + grid.immediate_resistance,
+                          grid.coning @ T, grid.coning @ t + grid.immediate_coning))  # fmt: skip
+
+        def lacking(at, taken=taken, gap=gap):
+            clearance, rise = at[0] * state.clearance, at[1] * state.rise
+            heats = [(rise - a) / b for a, b, _, _ in taken]
+            coning = seal.coning + sum(c + d * q for (_, _, c, d), q in zip(taken, heats, strict=True))
+            opening, _, leakage, made = film(seal, r, clearance + coning * r_in, np.full(POINTS, rise))
+            power = sum(np.trapezoid(heat * 2 * np.pi * r, r) for heat in made)
+            power -= seal.heat(seal.temperature + rise) * leakage * rise
+            moved = clearance - gap - (opening - force) / (damping * per_step)
+            return moved / state.clearance, (power - sum(heats)) / state.power
+
+        guess = root(lacking, guess, tol=1e-12).x
+        heats = [(guess[1] * state.rise - a) / b for a, b, _, _ in taken]
+        cells = [2 * (T + q * t) - before for T, q, t, before in zip(own, heats, enter, cells, strict=True)]
+        gap = 2 * guess[0] * state.clearance - gap
+        found.append((guess[1] - 1) * state.rise)
+    return np.array(found)
+
+
+def of_oscillation(values, step):
+    """Exponent (1/s, complex) of an oscillation by its values (n,) every `step` (s)."""
+    (a, b), *_ = np.linalg.lstsq(np.stack([values[1:-1], values[:-2]], axis=1), values[2:], rcond=None)
+    return np.log(np.roots([1, -a, -b]).astype(complex))[0] / step
+
+
 def slow_root(seal, state, rings, guess):
     """The root s (1/s, complex) of 1 = H_coning X(s) + H_T Z(s) beside a warm `state`: how a small change of it grows.
 

@@ -1,4 +1,5 @@
-"""What a ring of a scene takes of the film's heat: numbers of its maker, or its drawing, material and cooling.
+"""What a ring of a scene takes of the film's heat, and stores: numbers of its maker, or its drawing, material and
+cooling.
 
 **Source** faces/ring_heat.py for a ring from its drawing, closed_form/ring_fin.py for its convection by speed.
 **Valid** convection at the largest speed of the scene and the temperature of the sealed liquid, whatever the speed.
@@ -6,6 +7,8 @@
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from ..numerics.piecewise_linear import initially
 from ..scene.liquid import liquid_of
@@ -73,3 +76,77 @@ def heated_body(scene, name: str, cooling: float = 1.0) -> HeatedBody:
         cooled and cooled.reynolds, bool(cooled and cooled.extrapolated), found.hottest, found.at_o_ring, found.biot,
         film.outer_radius - film.inner_radius < drawn.width / 3.0, body.length > 4.0 * drawn.width, found,
     )  # fmt: skip
+
+
+class ThermalStates:
+    """What rings store: states theta (K), six of each from its drawing where all are, else one, the rise.
+
+        one state:  C rise' = heat that enters - G rise,  coning by heat = B rise
+        six a ring: tau_k theta_k' = R q - theta_k,  rise = sum R_k/R theta_k + R_0 q,
+                    coning = sum X_k/R theta_k + X_0 q
+
+    q is what enters a ring, R_0 and X_0 follow it at once; where it stays all states of the rings are the rise.
+    `content` (J/K) and `leaving` (W/K) of each state are the heat that it holds and that it gives to the liquid.
+    """
+
+    def __init__(self, rings: dict[str, HeatedBody]):
+        bodies = list(rings.values())
+        wholes = [body.whole for body in bodies if body.whole is not None]
+        self.several = len(wholes) == len(bodies)
+        if not self.several:
+            self.content = np.array([sum((body.time_constant or 0.0) / body.resistance for body in bodies)])
+            self.leaving = np.array([sum(1.0 / body.resistance for body in bodies)])
+            self.turned = sum(body.coning_per_watt / body.resistance for body in bodies)
+            return
+        self.ring = np.concatenate([np.full(len(whole.resistances), k) for k, whole in enumerate(wholes)])
+        self.time = np.concatenate([whole.time_constants for whole in wholes])
+        self.resistance = np.array([whole.resistance for whole in wholes])[self.ring]
+        self.share, self.coning, self.content, self.leaving = (
+            np.concatenate([getattr(whole, name) for whole in wholes]) / self.resistance
+            for name in ("resistances", "conings", "contents", "leaving")
+        )
+        # Of each ring: (W/K) and (rad/K) over the rise of the face beyond that of its states.
+        self.immediate = np.array([1.0 / whole.immediate_resistance for whole in wholes])
+        self.immediate_coning = np.array([whole.immediate_coning for whole in wholes]) * self.immediate
+
+    def steady(self, rise: float) -> np.ndarray:
+        """The states at a rise (K) that stays."""
+        return np.full(len(self.content), rise)
+
+    def beneath(self, theta: np.ndarray) -> np.ndarray:
+        """The rise (K) of each ring's face less what follows its heat at once."""
+        return np.bincount(self.ring, self.share * theta, len(self.immediate))
+
+    def rates(self, theta: np.ndarray, rise: float) -> np.ndarray:
+        """Of theta (K/s), the faces at a rise (K)."""
+        entering = self.immediate * (rise - self.beneath(theta))
+        return (self.resistance * entering[self.ring] - theta) / self.time
+
+    def matrix(self, squeezed: np.ndarray, heated: np.ndarray) -> np.ndarray:
+        """Rates (1/s) of clearance and theta about a warm state over small changes of these, (1 + states, the same).
+
+        `squeezed`, `heated`: slopes of the clearance's rate (m/s) and of the heat that enters the rings (W), over
+        clearance (m), rise (K) and coning by heat (rad).
+        """
+        states = len(self.content)
+        if not self.several:
+            # One state is the rise itself, and coning goes with it.
+            squeezed, heated = ([by[0], by[1] + self.turned * by[2]] for by in (squeezed, heated))
+            return np.array([squeezed, [heated[0], heated[1] - self.leaving[0]] / self.content])
+        beneath = np.zeros((len(self.immediate), 1 + states))
+        beneath[self.ring, 1 + np.arange(states)] = self.share
+        coning = np.concatenate([[0.0], self.coning]) - self.immediate_coning @ beneath
+        # The heat that enters changes as much as all rings take.
+        rise = self.immediate @ beneath + heated[2] * coning
+        rise[0] += heated[0]
+        turned = float(np.sum(self.immediate_coning))
+        rise /= float(np.sum(self.immediate)) - heated[1] - heated[2] * turned
+        coning += turned * rise
+        found = np.empty((1 + states, 1 + states))
+        found[0] = squeezed[1] * rise + squeezed[2] * coning
+        found[0, 0] += squeezed[0]
+        entering = self.immediate[:, None] * (rise - beneath)
+        found[1:] = self.resistance[:, None] * entering[self.ring]
+        found[1:, 1:] -= np.eye(states)
+        found[1:] /= self.time[:, None]
+        return found

@@ -1,11 +1,9 @@
 """Temperature and coning over time, while speed, pressures or the sealed liquid's temperature change: aligned faces,
 the film squeezed, the rings with one state of heat in all or, from their drawings, with six each.
 
-    one state:  C rise' = H - (G + density specific_heat Q) rise,  coning by heat = B rise
-    six a ring: tau_k theta_k' = R_k q - theta_k,  rise = sum theta_k + R_0 q,  coning = sum X_k/R_k theta_k + X_0 q
-    film:       D clearance' = opening force - closing force
+    D clearance' = opening force - closing force,   heat that enters the rings = H - density specific_heat Q rise
 
-q is what enters a ring, the sum of them and what the leakage carries is the heat H; R_0, X_0 follow the heat at once.
+with the rings' states of heated_rings.py: their faces have one rise.
 **Source** derived; the states of a ring are faces/ring_heat.py's.
 **Valid** rings without inertia: changes slower than they move.
 """
@@ -18,6 +16,7 @@ import numpy as np
 
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene.variants import frozen_at
+from .heated_rings import ThermalStates
 from .warm_state import Warming, WarmState, warming
 
 # Relative accuracy of the integration, and absolute of the rise (K).
@@ -34,61 +33,34 @@ CORRECTIONS, SAME = 40, 1e-11
 
 @dataclass(frozen=True)
 class Course:
-    """The `time` (s) of steps and the WarmState of each, the `heat` made in all (J), the share of it by which rings of
-    one state store and lose another heat (`residual`, None of six), and when the film closed (s), None if it did
-    not."""
+    """The `time` (s) of steps and the WarmState of each, the `heat` made in all (J), the share of it by which, at most
+    of any step, what left with liquid and leakage and what the rings hold more is not the heat made by then
+    (`residual`), and when the film closed (s), None if it did not."""
 
     time: list[float]
     states: list[WarmState]
     heat: float
-    residual: float | None
+    residual: float
     collapsed: float | None
 
 
-class ThermalStates:
-    """The rings' states theta (K): six of each from its drawing where all are, else one, the rise."""
-
-    def __init__(self, found: Warming):
-        wholes = [ring.whole for ring in found.rings.values()]
-        self.several = all(whole is not None for whole in wholes)
-        if not self.several:
-            self.storing = np.array([found.capacity])
-            return
-        self.ring = np.concatenate([np.full(len(whole.resistances), k) for k, whole in enumerate(wholes)])
-        self.time = np.concatenate([whole.time_constants for whole in wholes])
-        self.resistance = np.concatenate([whole.resistances for whole in wholes])
-        self.coning = np.concatenate([whole.conings for whole in wholes]) / self.resistance
-        self.immediate = np.array([whole.immediate_resistance for whole in wholes])
-        self.immediate_coning = np.array([whole.immediate_coning for whole in wholes])
-
-    def steady(self, found: Warming, rise: float) -> np.ndarray:
-        """The states at a rise (K) that stays."""
-        if not self.several:
-            return np.array([rise])
-        through = np.array([rise / ring.resistance for ring in found.rings.values()])
-        return self.resistance * through[self.ring]
-
-    def now(self, found: Warming, theta: np.ndarray, clearance: float, rise: float) -> tuple[WarmState, np.ndarray]:
-        """The state of the film and the rates of theta (K/s) at a clearance (m), the common temperature looked for from
-        a `rise` (K) on."""
-        if not self.several:
-            now = found.state(float(theta[0]), clearance)
-            return now, np.array([found.surplus(now)]) / self.storing
-        within = np.bincount(self.ring, theta, len(self.immediate))
-        coned, held = float(self.coning @ theta), np.sum(within / self.immediate)
-        before = None
-        for _ in range(CORRECTIONS):
-            coned_by = coned + float(self.immediate_coning @ ((rise - within) / self.immediate))
-            now = found.state(rise, clearance, coned_by)
-            balanced = (now.power + held) / (np.sum(1.0 / self.immediate) + now.carried)
-            tried = rise, float(balanced - rise)
-            if abs(tried[1]) < SAME:
-                break
-            # By secants, once there are two.
-            rise = float(balanced) if before is None else _secant(before, tried)
-            before = tried
-        entering = (rise - within) / self.immediate
-        return now, (self.resistance * entering[self.ring] - theta) / self.time
+def film_between(rings: ThermalStates, found: Warming, theta: np.ndarray, clearance: float, rise: float) -> WarmState:
+    """The state of the film at a clearance (m) between rings in states theta (K), its rise looked for from a `rise` (K)
+    on."""
+    if not rings.several:
+        return found.state(float(theta[0]), clearance)
+    beneath, before = rings.beneath(theta), None
+    coned, held = float(rings.coning @ theta), rings.immediate @ beneath
+    for _ in range(CORRECTIONS):
+        now = found.state(rise, clearance, coned + float(rings.immediate_coning @ (rise - beneath)))
+        balanced = (now.power + held) / (np.sum(rings.immediate) + now.carried)
+        tried = rise, float(balanced - rise)
+        if abs(tried[1]) < SAME:
+            break
+        # By secants, once there are two.
+        rise = float(balanced) if before is None else _secant(before, tried)
+        before = tried
+    return now
 
 
 def _secant(before, here) -> float:
@@ -111,22 +83,24 @@ def course(scene, times, start: WarmState, say: Callable[[float], None] = lambda
     from scipy.integrate import solve_ivp
 
     whole = warming(scene)
-    rings, unit = ThermalStates(whole), start.clearance
+    rings, unit = ThermalStates(whole.rings), start.clearance
     first = whole.under(frozen_at(scene, times[0]))
     # Clearance, states of the rings, heat made and heat that left (J).
-    y, kept, collapsed, near = np.array([1.0, *rings.steady(first, start.rise), 0.0, 0.0]), [], None, [start.rise]
-    begun, damped = y[1], first.damping(start.rise, unit)
+    y, kept, collapsed, near = np.array([1.0, *rings.steady(start.rise), 0.0, 0.0]), [], None, [start.rise]
+    damped, lacking = first.damping(start.rise, unit), [0.0]
 
     def here(t):
         return whole.under(frozen_at(scene, float(t)))
 
     def rates(t, y):
         found, clearance = here(min(max(t, inside[0]), inside[1])), max(float(y[0]), CLOSED) * unit
-        now, warming_up = rings.now(found, y[1:-2], clearance, near[0])
-        near[0] = now.rise
+        theta = y[1:-2]
+        now = film_between(rings, found, theta, clearance, near[0])
+        near[0], carried = now.rise, now.carried * now.rise
+        warming_up = rings.rates(theta, now.rise) if rings.several else [found.surplus(now) / rings.content[0]]
         damping = max(found.damping(now.rise, clearance, now.coned_by), LEAST * damped)
         squeezed = now.excess / (damping * unit)
-        return np.array([squeezed, *warming_up, now.power, (found.conductance + now.carried) * now.rise])
+        return np.array([squeezed, *warming_up, now.power, float(rings.leaving @ theta) + carried])
 
     def jacobian(t, y):
         # SciPy's own widens its steps without end for the two heats, on which nothing hangs.
@@ -150,12 +124,12 @@ def course(scene, times, start: WarmState, say: Callable[[float], None] = lambda
         for t, column in list(zip(part.t, part.y.T, strict=True))[1 if kept else 0 :]:
             clearance = max(float(column[0]), CLOSED) * unit
             found = here(min(max(t, inside[0]), inside[1]))
-            kept.append((float(t), rings.now(found, column[1:-2], clearance, start.rise)[0]))
+            lacking.append(abs(column[-2] - column[-1] - float(rings.content @ (column[1:-2] - start.rise))))
+            kept.append((float(t), film_between(rings, found, column[1:-2], clearance, start.rise)))
         y = part.y[:, -1]
         say(end / times[-1])
         if part.status != 0:
             collapsed = float(part.t[-1])
             break
-    made, left = float(y[-2]), float(y[-1])
-    residual = None if rings.several else abs(made - left - whole.capacity * (y[1] - begun)) / max(made, RESOLVED)
-    return Course([t for t, _ in kept], [now for _, now in kept], made, residual, collapsed)
+    made = float(y[-2])
+    return Course([t for t, _ in kept], [now for _, now in kept], made, max(lacking) / max(made, RESOLVED), collapsed)

@@ -10,6 +10,9 @@ and in time, the film squeezed with the damping D,
 
     C rise' = H - (G + density specific_heat Q) rise,  C = sum time_constant/R,  D clearance' = opening - closing force
 
+or, of rings from their drawings, with the states of heated_rings.py: quick and late coning may oppose each other, and a
+seal that is pressurised inside then hunts before heat loses its balance.
+
 **Source** derived; the field is Lebeck, *Principles and Design of Mechanical Face Seals* (1991), and Brunetiere,
 Tournerie & Frene (2003).
 **Valid** liquids; walls and film of one temperature, as a film of a micrometre has it (b mu U^2/k below 1), and where
@@ -31,7 +34,7 @@ from ..scene.liquid import in_numbers, liquid_of
 from ..scene.scene import Closing, SceneError
 from ..status import Status
 from .equilibrium import closing_law, crossing, equilibria
-from .heated_rings import heated_body
+from .heated_rings import ThermalStates, heated_body
 from .interface import Asked, Interface, flow_at_rest, opening_law, rest_state
 
 # Rises that are looked at between the first, as a share of the last, and the end of the liquid's table.
@@ -43,7 +46,7 @@ TINY = 1e-9
 # Halvings towards the rise at which a film holds no more.
 HALVINGS = 30
 # From rise to rise in looking for the balance of a speed nearby: first, and at most: near a fold two states are close.
-WIDER, WIDEST = 1.1, 1.2
+WIDER, WIDEST = 1.05, 1.2
 # From clearance to clearance in following one, and how far it is followed from rise to rise.
 STRIDE, REACH = 1.03, 60
 
@@ -53,9 +56,9 @@ class WarmState:
     """A state in which heat balances: `rise` (K) of the faces over the sealed liquid, `clearance` (m) and `coning`
     (rad) then, `viscosity` (Pa s), heat made `power` (W), of it the asperities' `contact_power` and what the leakage
     spends `flow_power`, `carried` (W/K) by the leakage, `loop_gain` dH/d(rise) over (G + carried), `slow` the least
-    damped eigenvalue (1/s, complex; None without time constants), and whether it is `stable`; `torque` (N m) of film
-    and asperities, `excess` (N) of the opening force over the closing force, which is 0 at its clearance; `coned_by`:
-    coning by heat (rad)."""
+    damped eigenvalue of film and rings (1/s, complex; None without time constants), and whether it is `stable`;
+    `torque` (N m) of film and asperities, `excess` (N) of the opening force over the closing force, which is 0 at its
+    clearance; `coned_by`: coning by heat (rad)."""
 
     rise: float
     clearance: float
@@ -73,13 +76,19 @@ class WarmState:
     slow: complex | None = None
     stable: bool = True
 
+    @property
+    def period(self) -> float | None:
+        """Of the oscillation (s) that grows from the state: it hunts; None if it is stable or leaves it otherwise."""
+        hunts = self.slow is not None and not self.stable and self.slow.imag
+        return 2.0 * math.pi / self.slow.imag if hunts else None
+
 
 class Warming:
     """A scene with `[film.heat]` at the conditions of its start: `rings` (HeatedBody by name), what it is at any rise,
     and its warm states.  Raises SceneError where no closing force is known."""
 
     def __init__(self, scene, cooling: float = 1.0):
-        cold = _unheated(scene)
+        cold = unheated(scene)
         self.law, self.said = closing_law(cold, opening_law(cold))
         self.rings = {name: heated_body(scene, name, cooling) for name in scene.film.heat.rings}
         self.conductance = sum(1.0 / ring.resistance for ring in self.rings.values())
@@ -258,21 +267,25 @@ class Warming:
         return replace(state, loop_gain=made / (self.conductance + state.carried), slow=slow, stable=bool(stable))
 
     def _slow(self, state: WarmState) -> complex | None:
-        """Least damped eigenvalue (1/s) of clearance and rise about a state; None without time constants."""
+        """Least damped eigenvalue (1/s) of the clearance and the rings' heat about a state; None without time
+        constants."""
         if self.capacity is None:
             return None
-        damping = self.damping(state.rise, state.clearance)
-        gaps = STEP * state.clearance * np.array([-2.0, -1.0, 1.0, 2.0])
-        rises = STEP * max(state.rise, 1e-3) * np.array([-2.0, -1.0, 1.0, 2.0])
+        film = self.scene.film
+        # Of the coning by heat such a step as changes the film's outer edge like that of the clearance.
+        at, wide = np.array([state.clearance, state.rise, state.coned_by]), film.outer_radius - film.inner_radius
+        steps = STEP * np.array([state.clearance, max(state.rise, 1e-3), state.clearance / wide])
 
-        def slopes(value):
-            by_gap = _slope([value(state.rise, state.clearance + d) for d in gaps], gaps)
-            return by_gap, _slope([value(state.rise + d, state.clearance) for d in rises], rises)
+        def film_at(clearance, rise, coned_by):
+            there = self.state(rise, clearance, coned_by)
+            return np.array([there.excess, there.power - there.carried * rise])
 
-        squeezed = slopes(lambda rise, gap: self.state(rise, gap).excess / damping)
-        heated = slopes(lambda rise, gap: self.surplus(self.state(rise, gap)) / self.capacity)
-        values = np.linalg.eigvals(np.array([squeezed, heated]))
-        return complex(values[np.argmax(values.real)])
+        slopes = [(film_at(*(at + d)) - film_at(*(at - d))) / (2.0 * d.sum()) for d in np.diag(steps)]
+        squeezed, heated = np.transpose(slopes)
+        matrix = ThermalStates(self.rings).matrix(squeezed / self.damping(state.rise, state.clearance), heated)
+        values = np.linalg.eigvals(matrix)
+        slowest = values[np.argmax(values.real)]
+        return complex(slowest.real, abs(slowest.imag))
 
     def working(self, near: WarmState | None = None) -> WarmState | None:
         """The state that the seal works in, the coolest stable one; looked for beside one `near` first, that of a speed
@@ -282,11 +295,13 @@ class Warming:
 
     @cached_property
     def _coolest(self) -> WarmState | None:
-        if self.cold_state is not None and (found := self._beside(self.cold_state)) is not None:
-            found = self._judged(found)
-            if found.stable:
-                return found
-        return next((state for state in self.states if state.stable), None)
+        found = self.continued(self.cold_state)
+        return found if found and found.stable else next((state for state in self.states if state.stable), None)
+
+    def continued(self, near: WarmState | None) -> WarmState | None:
+        """The balance that continues one `near`, stable or not; None without it."""
+        found = self._beside(near) if near is not None else None
+        return None if found is None else self._judged(found)
 
     def _beside(self, near: WarmState) -> WarmState | None:
         """The balance that continues one `near`, where the surplus falls; None if there is none."""
@@ -294,27 +309,28 @@ class Warming:
         if low is None:
             # No film so warm: from the cold on.
             low = high = self.cold_state
-        wider = WIDER
+        wider, ended = WIDER, math.inf
         while low is not None and high is not None:
             if self.surplus(low) >= 0.0 > self.surplus(high):
                 return self._balanced(low, high)
             if self.surplus(low) < 0.0:
                 low, high = self._held(low.rise / wider, low.clearance), low
             else:
-                low, high = high, self._warmer(high, max(high.rise * wider, high.rise + FIRST * self.highest))
+                rise = max(high.rise * wider, high.rise + FIRST * self.highest)
+                low, (high, ended) = high, self._warmer(high, min(rise, self.highest), ended)
             wider = min(wider**2, WIDEST)
         return None
 
-    def _warmer(self, state: WarmState, rise: float) -> WarmState | None:
-        """A state warmer than one, at a rise (K) or as near to it as there is a film and the liquid's table; None where
-        both end with the state."""
-        rise = min(rise, self.highest)
+    def _warmer(self, state: WarmState, rise: float, ended: float) -> tuple[WarmState | None, float]:
+        """A state warmer than one, at a rise (K) or as near to it as there is a film, None where that ends with the
+        state; and the least rise at which there is known to be none, `ended` before."""
         # Whatever was asked for is tried, and halves of it.
+        rise = rise if rise < ended else 0.5 * (state.rise + ended)
         while rise - state.rise > 0.1 * FIRST * self.highest:
             if (found := self._held(rise, state.clearance)) is not None:
-                return found
-            rise = 0.5 * (state.rise + rise)
-        return None
+                return found, ended
+            ended, rise = rise, 0.5 * (state.rise + rise)
+        return None, ended
 
     def _held(self, rise: float, near: float) -> WarmState | None:
         """The state at a rise (K) and the clearance that continues one `near` (m); None where no film holds."""
@@ -323,6 +339,10 @@ class Warming:
 
     def why_none(self) -> str:
         """Why there is no warm state, in words."""
+        if self.states:
+            period = self.states[0].period
+            hunts = f": the coolest hunts with a period of {period:.3g} s" if period else ""
+            return f"every balance of heat is unstable{hunts}"
         if not self.scanned:
             return "no film holds the closing force at any temperature of the liquid's table"
         last = self.scanned[-1]
@@ -344,7 +364,7 @@ def _more(quantity, change: float):
     return quantity + change
 
 
-def _unheated(scene):
+def unheated(scene):
     """The scene with faces that take no heat and the numbers of its liquid."""
     return replace(scene, film=in_numbers(replace(scene.film, heat=None)))
 
@@ -376,7 +396,7 @@ def at_work(scene, speed: float | None = None, near: WarmState | None = None):
     a shaft speed (rad/s; its own), clearance and closing force of that; and its WarmState, None without `[film.heat]`,
     looked for beside one `near` first.  Raises NoWarmState."""
     if scene.film.heat is None:
-        return (scene if scene.film.liquid is None else _unheated(scene)), None
+        return (scene if scene.film.liquid is None else unheated(scene)), None
     found = warming(scene)
     if speed is not None:
         found = found.under(replace(scene, shaft=replace(scene.shaft, speed=speed)))
@@ -384,7 +404,7 @@ def at_work(scene, speed: float | None = None, near: WarmState | None = None):
     if state is None and near is not None:
         raise NoWarmState("shaft.speed", f"no warm state at {speed:.6g} rad/s", "a speed whose heat is carried away")
     if state is None:
-        why = found.why_none() if not found.states else "every balance of heat is unstable"
+        why = found.why_none()
         raise NoWarmState(
             "film.heat",
             f"no warm state: {why}",

@@ -20,8 +20,9 @@ from .ring_coning import RingBody, coning_by_bow, coning_by_temperature, crown, 
 RADIAL, AXIAL, GRADING = 24, 32, 1.5
 # Cells of the band at least, and of each stretch beside it.
 FEWEST_IN_BAND, FEWEST_BESIDE = 8, 2
-# Shifts over 1/(time constant) whose answers the reduced states span: of those tried the ones that keep 18 rings within
-# 1.5 % of the whole grid at all times.
+# Shifts over 1/(time constant) whose answers the reduced states span beside the even temperature, which stands for the
+# coning's answer at the last.  Of 40 rings drawn at random the face is within 2.1 %, the coning within 2.8 % of the
+# whole grid at all times, as with that answer in its place.
 SHIFTS = (0.0, 4.0, 80.0)
 
 
@@ -75,6 +76,10 @@ class RingHeat:
     """What each state adds to the face's rise, K/W, (6,)."""
     conings: np.ndarray
     """What each state adds to the coning, rad/W, (6,)."""
+    contents: np.ndarray
+    """What each state adds to the heat that the ring holds, J/W, (6,)."""
+    leaving: np.ndarray
+    """What each state adds to the heat that the liquid takes, over the heat, (6,); their sum is 1."""
     immediate_resistance: float
     """Rest of the resistance, which follows the heat at once, K/W."""
     immediate_coning: float
@@ -89,7 +94,7 @@ def ring_heat(body: RingBody) -> RingHeat:
     resistance = float(ring.flux @ steady) + ring.immediate_resistance
     coning = float(ring.coning @ steady) + ring.immediate_coning
     moment = float(steady @ (ring.capacity * steady)) / resistance
-    times, resistances, conings = _reduced(ring, moment)
+    times, resistances, conings, contents, leaving = _reduced(ring, moment)
     flux = 1 / _annulus(body.face_inner_radius, body.face_outer_radius)
     band = ring.flux[:RADIAL] > 0
     half = ring.depths[1] / 2
@@ -105,6 +110,8 @@ def ring_heat(body: RingBody) -> RingHeat:
         times,
         resistances,
         conings,
+        contents,
+        leaving,
         resistance - float(np.sum(resistances)),
         coning - float(np.sum(conings)),
     )
@@ -173,12 +180,15 @@ def _coning_row(body: RingBody, edges, depths, band, beside) -> tuple[np.ndarray
 
 
 def _reduced(ring: Conduction, time: float):
-    """States of slow answers (rational Krylov projection): time constants (s), their resistances and conings.
+    """States of slow answers (rational Krylov projection): time constants (s) and, of each over the heat, what it adds
+    to the face's rise, to the coning, to the heat held and to the heat that leaves.
 
-    The space of (K + s C)^-1 [flux, coning] at a few shifts s; as K and C are symmetric all states decay.
+    The space of (K + s C)^-1 [flux, coning] at a few shifts s, and the even temperature: with it heat is kept as in the
+    whole grid, 1^T K being what is convected.  As K and C are symmetric all states decay.
     """
     loads = np.stack([ring.flux, ring.coning / np.linalg.norm(ring.coning)], axis=1)
-    space = np.concatenate([ring.answer(loads, shift / time) for shift in SHIFTS], axis=1)
+    even = np.ones((len(ring.flux), 1))
+    space = np.concatenate([even, *(ring.answer(loads, shift / time) for shift in SHIFTS)], axis=1)[:, :-1]
     # Orthonormal in C; two answers that coincide would leave a direction of rounding, which carries nothing.
     root = np.sqrt(ring.capacity)[:, None]
     basis, _ = np.linalg.qr(root * space / np.linalg.norm(root * space, axis=0))
@@ -186,7 +196,8 @@ def _reduced(ring: Conduction, time: float):
     rates, modes = eigh(basis.T @ _times(ring.matrix, basis))
     states = basis @ modes
     by_heat = ring.flux @ states / rates
-    return 1 / rates, by_heat * (ring.flux @ states), by_heat * (ring.coning @ states)
+    rows = ring.flux, ring.coning, ring.capacity, ring.convected
+    return 1 / rates, *(by_heat * (row @ states) for row in rows)
 
 
 def _times(bands: np.ndarray, vectors: np.ndarray) -> np.ndarray:

@@ -1,6 +1,7 @@
 """What heat does to a seal, in numbers: the warm state of a scene as `run`, `check` and `equilibrium` have it."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -8,6 +9,7 @@ from ..dynamics.run_state import Caution, Concern
 from ..dynamics.warm_course import breaks
 from ..dynamics.warm_state import Warming, WarmState, warming
 from ..numerics.piecewise_linear import initially
+from ..quantities import in_words
 from ..scene.film import aligned_gaps, coned
 from ..scene.liquid import liquid_of
 
@@ -20,6 +22,10 @@ RADII = 2001
 ANOTHER = 0.05
 # Convection is known to a factor of two.
 COOLINGS = (0.5, 2.0)
+# Speeds that are looked at on the way up, and how exactly those are found at which a seal hunts or has no warm state.
+SPEEDS, ONSET, FOLD = 4, 1e-4, 1e-3
+# Share of the highest rise that the liquid's table has, beyond which it is the table that ends.
+TABLE = 0.99
 
 
 def heat_of(scene, state: WarmState | None, friction: float | None = None) -> dict | None:
@@ -45,6 +51,7 @@ def heat_of(scene, state: WarmState | None, friction: float | None = None) -> di
         "loop_gain": state.loop_gain,
         "slow_eigenvalue": None if state.slow is None else [state.slow.real, state.slow.imag],
         "stable": state.stable,
+        "hunting_period": state.period,
         "boiling_radius": boiling_radius(found, state),
         "boiling_radius_hottest": boiling_radius(found, state, max(HOTTEST, _hottest(found))),
         "cold": {"clearance": cold and cold.clearance, "power": cold and cold.power, "leakage": cold and cold.leakage},
@@ -52,6 +59,59 @@ def heat_of(scene, state: WarmState | None, friction: float | None = None) -> di
         "hottest": found.sealed + _hottest(found) * state.rise,
         "rings": {name: {k: v for k, v in vars(ring).items() if k != "whole"} for name, ring in found.rings.items()},
     }
+
+
+def limits_of(found: Warming, high: float) -> dict:
+    """From which shaft speeds (rad/s) up to `high` the state that continues the cold one hunts (`hunting`: `speed`,
+    `period` (s) there) and is no more (`fold`); None where it does not, or the liquid's table ends before."""
+    # Speeds and the states there, from rest on.
+    known: list[tuple[float, WarmState | None]] = [(0.0, found.cold_state)]
+
+    def look(speed) -> WarmState | None:
+        there, (_, near) = found.under(replace(found.scene, shaft=replace(found.scene.shaft, speed=speed))), known[-1]
+        return there.continued(near or there.cold_state)
+
+    fold = None
+    for speed in map(float, np.linspace(0.0, high, SPEEDS + 1)[1:]):
+        state = look(speed)
+        if state is None and known[-1][1] is not None:
+            fold = speed
+            break
+        known.append((speed, state))
+    while fold is not None and abs(fold - known[-1][0]) > FOLD * abs(fold):
+        middle = 0.5 * (known[-1][0] + fold)
+        if (state := look(middle)) is None:
+            fold = middle
+        else:
+            known.append((middle, state))
+    if fold is not None and known[-1][1].rise > TABLE * found.highest:
+        fold = None
+    unstable = [k for k, (_, state) in enumerate(known) if state is not None and not state.stable]
+    if not unstable:
+        return {"hunting": None, "fold": fold}
+    speed, state = known[unstable[0]]
+    del known[unstable[0] :]
+    while abs(speed - known[-1][0]) > ONSET * abs(speed):
+        middle = 0.5 * (known[-1][0] + speed)
+        between = look(middle)
+        if between is not None and between.stable:
+            known.append((middle, between))
+        else:
+            speed, state = middle, between
+    period = state and state.period
+    return {"hunting": {"speed": speed, "period": period} if period else None, "fold": fold}
+
+
+def limits_said(limits: dict) -> str:
+    """What `limits_of` found in a sentence, "" of nothing."""
+    words, hunting = [], limits["hunting"]
+    if hunting is not None:
+        speed, period = in_words("speed", hunting["speed"]), in_words("time", hunting["period"])
+        words.append(f"at {speed} the seal begins to hunt, with a period of {period}")
+    if limits["fold"] is not None:
+        words.append(f"at {in_words('speed', limits['fold'])} the state that it warms to from the cold is no more")
+    said = "; ".join(words)
+    return f"{said[0].upper()}{said[1:]}." if said else ""
 
 
 def _hottest(found: Warming) -> float:

@@ -19,7 +19,7 @@ from ..dynamics.equilibrium import (
     support_stiffness,
 )
 from ..dynamics.interface import Interface, flow_at_rest, opening_law, opening_parts, rest_state
-from ..dynamics.warm_state import at_work, warming
+from ..dynamics.warm_state import at_work, unheated, warming
 from ..faces.geometry import CAVITATED, CONTACT_PRESSURE, CONTACT_TORQUE, FLOW_INNER, SPIN_DIFFERENCE, TORQUE, WEAR
 from ..numerics.piecewise_linear import initially
 from ..quantities import in_words, resolved
@@ -28,7 +28,7 @@ from ..scene.film import coned
 from ..scene.gas import density_of
 from ..scene.scene import Closing, SceneError
 from ..scene.variants import frozen_at_start
-from ..simulation.heat import heat_of
+from ..simulation.heat import heat_of, limits_of, limits_said
 from ..units import Length
 from . import Info
 
@@ -44,6 +44,7 @@ INFO = Info(
         **dict.fromkeys(("load_support", "friction_coefficient", "cavitated_fraction", "loop_gain", "shares"), "1"),
         **dict.fromkeys(("rise", "face_temperature"), "K"), "coning": "rad", "viscosity": "Pa*s",
         **dict.fromkeys(("power", "contact_power", "carried"), "W"),
+        **dict.fromkeys(("speed", "fold"), "rad/s"), **dict.fromkeys(("period", "hunting_period"), "s"),
     },
     along={"curve": ("clearance",), "balance": ("rise",)},
 )  # fmt: skip
@@ -53,6 +54,8 @@ SHOWN = 3.0
 FINE = 1e-10
 # From clearance to clearance in looking for where friction gives way.
 STRIDE = 1.05
+# Up to which multiple of its speed a warm seal is looked at.
+FASTEST = 3.0
 
 
 @dataclass(frozen=True)
@@ -135,6 +138,7 @@ def run(scenario, settings, tools) -> Answer:
     }
     if warm is not None:
         numbers["why_none"] = "" if rows else warm.why_none()
+        numbers |= limits_of(warm, FASTEST * initially(given.shaft.speed))
         numbers["balance"] = {
             "rise": [state.rise for state in warm.scanned],
             "power": [state.power for state in warm.scanned],
@@ -146,7 +150,7 @@ def run(scenario, settings, tools) -> Answer:
 def _as_warm(warm):
     """The scene in the first of its warm states, or unheated if it has none."""
     states = sorted(warm.states, key=lambda state: not state.stable)
-    return warm.at(states[0].rise, states[0].clearance) if states else warm.at(0.0)
+    return warm.at(states[0].rise, states[0].clearance) if states else unheated(warm.scene)
 
 
 def _warm_rows(scene, warm) -> list[dict]:
@@ -305,10 +309,12 @@ def _notes(numbers, scene) -> list[str]:
     """What the rows do not say."""
     roots, notes = numbers["roots"], [f"Closing force: {numbers['closing_said']}."]
     wears = [face for face, coefficient in _wears(scene).items() if coefficient]
+    if "fold" in numbers and (beyond := limits_said(numbers)):
+        notes.append(beyond)
     if not roots:
         least, most = (in_words("force", end(numbers["curve"]["opening_force"])) for end in (min, max))
         notes.append(f"The film carries {least} to {most} there.")
-    if any(not root["stable"] for root in roots):
+    if any(not root["stable"] and not root.get("heat", {}).get("hunting_period") for root in roots):
         notes.append("From an unstable clearance the faces close, or open to a stable one.")
     if any(
         not root["stable"] and "heat" not in root and root["stiffness"] + numbers["support_stiffness"] > 0

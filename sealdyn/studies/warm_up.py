@@ -15,6 +15,7 @@ from ..numerics.piecewise_linear import PiecewiseLinear
 from ..quantities import in_words
 from ..scenario.errors import ScenarioError
 from ..scene.variants import frozen_at
+from ..simulation.heat import limits_of, limits_said
 from ..units import Time
 from . import Info
 
@@ -26,7 +27,7 @@ INFO = Info(
     units={
         "time": "s", "rise": "K", "coning": "rad", "clearance": "m", "power": "W", "contact_power": "W",
         "leakage": "m^3/s", "torque": "N m", "speed": "rad/s", "energy_residual": "1",
-        "heat": "J", "collapsed": "s",
+        "heat": "J", "collapsed": "s", "period": "s", "fold": "rad/s",
     },
     along=dict.fromkeys(
         ("rise", "coning", "clearance", "power", "contact_power", "leakage", "torque", "speed"), ("time",)
@@ -68,9 +69,14 @@ def run(scenario, settings, tools) -> Answer:
         bare = next(name for name, ring in found.rings.items() if ring.time_constant is None)
         raise ScenarioError(scenario.name, f"film.heat.{bare}.time_constant", "nothing", "a time, to warm up in")
     start = found.cold_state if settings.begin == "cold" else found.working()
+    if start is None and settings.begin == "warm":
+        raise ScenarioError(scenario.name, "study.warm_up.begin", found.why_none(), '"cold"')
     if start is None:
         raise ScenarioError(scenario.name, "film", "no film at the start", 'a film that holds, or begin = "warm"')
-    numbers = _numbers(scene, course(scene, times, start, tools.say))
+    # Under the loads that there are when it turns fastest.
+    highest = max(times, key=lambda t: abs(scene.shaft.speed.at(t)))
+    limits = limits_of(found.under(frozen_at(scene, highest)), float(scene.shaft.speed.at(highest)))
+    numbers = _numbers(scene, course(scene, times, start, tools.say)) | limits
     return Answer(numbers, _found(numbers), [_table(numbers)], _panels(numbers))
 
 
@@ -103,15 +109,16 @@ def _numbers(scene, found) -> dict:
 
 
 def _found(numbers) -> str:
-    """How warm, how far open, and when."""
+    """How warm, how far open, and when; whether it hunts."""
+    beyond = limits_said(numbers)
     if numbers["collapsed"] is not None:
-        return f"The film collapses by heat after {in_words('time', numbers['collapsed'])}."
+        return f"The film collapses by heat after {in_words('time', numbers['collapsed'])}. {beyond}".rstrip()
     hot = int(np.argmax(numbers["rise"]))
     words = f"The faces get {in_words('temperature', numbers['rise'][hot])} warmer than the sealed liquid"
     first = next(k for k, rise in enumerate(numbers["rise"]) if rise >= (1.0 - NEARLY) * numbers["rise"][hot])
     when = f"{in_words('share', 1.0 - NEARLY)} of it after {in_words('time', numbers['time'][first])}"
     begin, then = (in_words("clearance", numbers["clearance"][k]) for k in (0, hot))
-    return f"{words}, {when}; the clearance goes from {begin} to {then}."
+    return f"{words}, {when}; the clearance goes from {begin} to {then}. {beyond}".rstrip()
 
 
 def _table(numbers) -> Table:

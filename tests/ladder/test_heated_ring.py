@@ -210,6 +210,29 @@ def test_six_states_for_the_whole_grid_in_time(name):
     assert moment == pytest.approx(found.time_constant, rel=1e-6)
 
 
+@pytest.mark.parametrize("name", ROWS)
+def test_heat_of_six_states_is_that_of_the_whole_grid(name):
+    """Heat held and heat lost while the film heats, holds and stops, beside all cells by the midpoint rule.  In the
+    states all that enters is held or lost, to rounding."""
+    ring = ROWS[name][0]
+    grid, found = conduction(ring), ring_heat(ring)
+    assert np.sum(found.leaving) == pytest.approx(1.0, rel=1e-9)
+    assert found.contents == pytest.approx(found.leaving * found.time_constants, rel=1e-7, abs=1e-9)
+    step, cells, states = 0.02 * found.time_constant, np.zeros(len(grid.flux)), np.zeros(6)
+    lost, left, entered, differ = 0.0, 0.0, 0.0, []
+    for k in range(400):
+        heat = np.interp(k + 0.5, [0, 50, 200, 220], [0.0, 100.0, 100.0, 0.0])
+        middle = grid.answer(heat * grid.flux + 2 / step * grid.capacity * cells, 2 / step)
+        cells, lost = 2 * middle - cells, lost + step * (grid.convected @ middle)
+        between = (heat + 2 * found.time_constants / step * states) / (1 + 2 * found.time_constants / step)
+        states, left = 2 * between - states, left + step * (found.leaving @ between)
+        entered += step * heat
+        differ.append((found.contents @ states - grid.capacity @ cells, left - lost))
+    assert np.abs(differ).max() < 3e-2 * entered
+    assert left + found.contents @ states == pytest.approx(entered, rel=1e-9)
+    assert lost + grid.capacity @ cells == pytest.approx(entered, rel=1e-9)
+
+
 def dense(bands):
     """The symmetric matrix of lower bands."""
     size = bands.shape[1]

@@ -5,11 +5,16 @@ from functools import cache
 
 import numpy as np
 import pytest
-from own_warm import Seal, one_temperature, slow_root, warm
+from own_warm import Seal, of_oscillation, one_temperature, slow_course, slow_root, warm
 from scipy.optimize import brentq
+from warm_seals import OIL, ROUGH, warm_seal
 
+import sealdyn
+from sealdyn.dynamics.warm_course import course
+from sealdyn.dynamics.warm_state import Warming, warming
 from sealdyn.faces.ring_coning import RingBody
-from sealdyn.faces.ring_heat import ring_heat
+from sealdyn.faces.ring_heat import conduction, ring_heat
+from sealdyn.simulation.heat import limits_of
 
 CARBON = dict(density=1800.0, modulus=20e9, poisson=0.2, expansion=4.5e-6, conductivity=10.0, specific_heat=750.0)
 CARBIDE = dict(density=3100.0, modulus=410e9, poisson=0.16, expansion=4e-6, conductivity=125.0, specific_heat=670.0)
@@ -170,3 +175,103 @@ def test_a_seal_pressurised_inside_hunts_before_it_folds():
     assert slow(7300.0) == pytest.approx(-0.107 + 0.324j, abs=0.03)
     # There is a warm state up to the fold.
     assert state(0.995 * 7935)[1] is not None and state(1.01 * 7935)[1] is None
+
+
+def inside(rpm):
+    """The same seal as a scenario."""
+
+    def drawn(ring):
+        sizes = {name: getattr(ring, name) for name in ("inner_radius", "outer_radius", "length")}
+        return sizes | {name: getattr(ring, name) for name in CARBON}
+
+    stator, rotor = INSIDE.rings
+    cooled = [{"convection": x.convection, "wetted_length": x.wetted_length, "wet": "bore"} for x in INSIDE.rings]
+    return sealdyn.Scenario.from_dict({
+        "shaft": {"speed": f"{rpm} rpm"},
+        "rotor": {"runout": 1e-5, "body": drawn(rotor)},
+        "closing": {"balance_ratio": INSIDE.balance_ratio, "spring_force": INSIDE.spring_force},
+        "film": {
+            "inner_radius": stator.face_inner_radius, "outer_radius": stator.face_outer_radius,
+            "coning": INSIDE.coning, "liquid": "water", "temperature": INSIDE.temperature,
+            "outer_pressure": 1e5, "inner_pressure": 1e5 - INSIDE.pressure,
+            "heat": dict(zip(("stator", "rotor"), cooled, strict=True)),
+        },
+        "stator": {
+            "body": drawn(stator), "support": {"axial_stiffness": 3e4, "axial_damping": 50.0, "radius": 0.027}
+        },
+    }, "inside")  # fmt: skip
+
+
+RPM = np.pi / 30
+
+
+@pytest.mark.core
+@pytest.mark.parametrize(("squeeze", "period"), [(1e-6, 16.0), (1.0, 30.0)])
+def test_the_program_says_from_where_on_that_seal_hunts_and_folds(squeeze, period, monkeypatch):
+    """The squeeze of the film leaves the onset and doubles the period."""
+    damping = Warming.damping
+    monkeypatch.setattr(Warming, "damping", lambda self, *at: squeeze * damping(self, *at))
+    found = sealdyn.study("equilibrium", inside(6500), points=11).answer
+    assert found["hunting"]["speed"] == pytest.approx(7408.0 * RPM, rel=0.02)
+    assert found["hunting"]["period"] == pytest.approx(period, rel=0.1)
+    assert found["fold"] == pytest.approx(7935.0 * RPM, rel=0.01)
+    assert found["roots"][0]["stable"] and found["roots"][0]["heat"]["hunting_period"] is None
+
+
+@pytest.mark.parametrize(("rpm", "hunts", "folds"), [(7300, False, False), (7500, True, False), (8200, True, True)])
+def test_a_warm_up_says_so_where_it_gets_there(rpm, hunts, folds):
+    found = sealdyn.study("warm-up", inside(rpm), start=0.3, hold=0.1).answer
+    assert (found["hunting"] is not None, found["fold"] is not None) == (hunts, folds)
+    if hunts:
+        assert found["hunting"]["speed"] == pytest.approx(7408.0 * RPM, rel=0.02)
+
+
+@pytest.mark.parametrize("changes", [{"film.coning": 4e-4}, ROUGH, OIL], ids=["smooth", "rough", "oil"])
+def test_seals_pressurised_outside_neither_hunt_nor_fold(changes):
+    found = sealdyn.study("equilibrium", warm_seal(changes), points=11).answer
+    assert found["hunting"] is None and found["fold"] is None
+
+
+def test_a_fold_far_below_the_speed_is_found():
+    found = limits_of(warming(inside(6500).scene), 20 * 7935.0 * RPM)
+    assert found["fold"] == pytest.approx(7935.0 * RPM, rel=0.01)
+    assert found["hunting"]["speed"] == pytest.approx(7408.0 * RPM, rel=0.02)
+
+
+def test_a_state_that_hunts_does_not_work():
+    """Its balance is told with its period, a run is refused; beyond the fold there is no row."""
+    first, thin = sealdyn.study("equilibrium", inside(7500), points=11).answer["roots"]
+    assert not first["stable"] and first["heat"]["hunting_period"] == pytest.approx(30.0, rel=0.2)
+    assert not thin["stable"] and thin["heat"]["hunting_period"] is None
+    with pytest.raises(sealdyn.ScenarioError) as error:
+        sealdyn.run(inside(7500))
+    assert error.value.key == "film.heat"
+    with pytest.raises(sealdyn.ScenarioError) as error:
+        sealdyn.study("warm-up", inside(7500), start=0.0, begin="warm")
+    assert error.value.key == "study.warm_up.begin"
+    assert sealdyn.study("equilibrium", inside(8200), points=11).answer["roots"] == []
+
+
+@pytest.mark.parametrize("rpm", [7250, 7500])
+def test_a_course_oscillates_and_grows_as_the_slow_eigenvalue_says(rpm):
+    scene, step = inside(rpm).scene, 2.0
+    found = warming(scene)
+    state = found.continued(found.cold_state)
+    times = [step * k for k in range(26)]
+    moved = course(scene, times, replace(state, clearance=1.001 * state.clearance))
+    at = np.searchsorted(moved.time, times[5:])
+    rises = np.array([moved.states[k].rise for k in at]) - state.rise
+    assert of_oscillation(rises, step) == pytest.approx(state.slow, abs=0.015 * abs(state.slow))
+    assert state.stable == (rpm < 7408) and moved.residual < 1e-9
+
+
+@pytest.mark.parametrize("rpm", [7300, 7500])
+def test_so_do_all_cells_of_both_rings(rpm):
+    """With this test's own film, squeezed, and midpoint rule."""
+    rings = [ring_heat(body) for body in INSIDE.rings]
+    seal, step = replace(INSIDE, speed=rpm * RPM), 0.2
+    state = one_temperature(seal, [x.resistance for x in rings], [x.coning_per_watt for x in rings])
+    rises = slow_course(seal, state, [conduction(body) for body in INSIDE.rings], 240, step, 1.001)
+    found = warming(inside(rpm).scene)
+    slow = found.continued(found.cold_state).slow
+    assert of_oscillation(rises[40::5], 5 * step) == pytest.approx(slow, abs=0.06 * abs(slow))

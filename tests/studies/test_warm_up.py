@@ -54,6 +54,7 @@ def test_course_ends_in_the_warm_state_and_cools_to_the_cold_one(pump, rings, tm
     warm = int(np.searchsorted(found["time"], 121.0))
     for key in ("rise", "coning", "clearance", "power"):
         assert found[key][warm] == pytest.approx(getattr(state, key), rel=2e-3), key
+    assert found["energy_residual"] < 1e-8
     assert abs(found["rise"][-1]) < 0.01 * state.rise
     assert found["clearance"][-1] == pytest.approx(found["clearance"][0], rel=1e-2)
 
