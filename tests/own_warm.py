@@ -151,10 +151,13 @@ def at_coning(seal, rise, coning):
 
 
 def squeezed(seal, r, gap, rise):
-    """Axial damping (N s/m) of the film along the radii r (m) with film `gap` (m), at one `rise` (K)."""
-    resist = 12 * seal.viscosity(seal.temperature + rise) / (r * gap**3)
-    beside = np.trapezoid(resist * r**2 / 2, r) / np.trapezoid(resist, r)
-    return np.pi * np.trapezoid(r**2 * resist * (r**2 / 2 - beside), r)
+    """Damping of the film along the radii r (m) with film `gap` (m), at one `rise` (K): of a rate of all of the gap
+    (N s/m), and of its cone (N s/rad)."""
+    resist, found = 12 * seal.viscosity(seal.temperature + rise) / (r * gap**3), []
+    for displaced in (r**2 / 2, r**3 / 3 - r[0] * r**2 / 2):
+        beside = np.trapezoid(resist * displaced, r) / np.trapezoid(resist, r)
+        found.append(np.pi * np.trapezoid(r**2 * resist * (displaced - beside), r))
+    return found
 
 
 def slow_course(seal, state, grids, along, step, moved):
@@ -166,8 +169,8 @@ def slow_course(seal, state, grids, along, step, moved):
     settled = [grid.answer(grid.flux) for grid in grids]
     through = [state.rise / (grid.flux @ T + grid.immediate_resistance) for grid, T in zip(grids, settled, strict=True)]
     cells = [q * T for q, T in zip(through, settled, strict=True)]
-    damping = squeezed(seal, r, state.clearance + state.coning * r_in, state.rise)
-    gap, guess, found = state.clearance * moved, np.ones(2), []
+    damping, by_cone = squeezed(seal, r, state.clearance + state.coning * r_in, state.rise)
+    gap, cone, guess, found = state.clearance * moved, state.coning, np.ones(2), []
     for _ in range(along):
         own = [grid.answer(per_step * grid.capacity * T, per_step) for grid, T in zip(grids, cells, strict=True)]
         taken = []
@@ -175,20 +178,23 @@ def slow_course(seal, state, grids, along, step, moved):
             taken.append((grid.flux @ T, grid.flux @ t + grid.immediate_resistance,
                           grid.coning @ T, grid.coning @ t + grid.immediate_coning))  # fmt: skip
 
-        def lacking(at, taken=taken, gap=gap):
-            clearance, rise = at[0] * state.clearance, at[1] * state.rise
+        def coned(rise, taken=taken):
             heats = [(rise - a) / b for a, b, _, _ in taken]
-            coning = seal.coning + sum(c + d * q for (_, _, c, d), q in zip(taken, heats, strict=True))
+            return heats, seal.coning + sum(c + d * q for (_, _, c, d), q in zip(taken, heats, strict=True))
+
+        def lacking(at, coned=coned, gap=gap, cone=cone):
+            clearance, rise = at[0] * state.clearance, at[1] * state.rise
+            heats, coning = coned(rise)
             opening, _, leakage, made = film(seal, r, clearance + coning * r_in, np.full(POINTS, rise))
             power = sum(np.trapezoid(heat * 2 * np.pi * r, r) for heat in made)
             power -= seal.heat(seal.temperature + rise) * leakage * rise
-            moved = clearance - gap - (opening - force) / (damping * per_step)
+            moved = clearance - gap - ((opening - force) / per_step - by_cone * (coning - cone)) / damping
             return moved / state.clearance, (power - sum(heats)) / state.power
 
         guess = root(lacking, guess, tol=1e-12).x
-        heats = [(guess[1] * state.rise - a) / b for a, b, _, _ in taken]
+        heats, coning = coned(guess[1] * state.rise)
         cells = [2 * (T + q * t) - before for T, q, t, before in zip(own, heats, enter, cells, strict=True)]
-        gap = 2 * guess[0] * state.clearance - gap
+        gap, cone = 2 * guess[0] * state.clearance - gap, 2 * coning - cone
         found.append((guess[1] - 1) * state.rise)
     return np.array(found)
 

@@ -74,8 +74,8 @@ class OwnSeal:
         return np.exp(-10.57455285 + 552.34120971 / (t - 142.78519617)), density * heat
 
     def loads(self, rise, clearance):
-        """Excess of opening over closing force (N), heat made (W), heat capacity of the leakage (W/K), damping (N s/m)
-        of a rise (K) and a clearance (m) at r_i, which broadcast."""
+        """Excess of opening over closing force (N), heat made (W), heat capacity of the leakage (W/K), dampings of the
+        clearance (N s/m) and of the cone about r_i (N s/rad), of a rise (K) and a clearance (m) there; broadcast."""
         rise, clearance = np.broadcast_arrays(np.asarray(rise, float), np.asarray(clearance, float))
         mu, capacity = self.liquid(rise)
         width, slope = self.r_o - self.r_i, self.coning + self.per_kelvin * rise
@@ -108,12 +108,15 @@ class OwnSeal:
             force = force + 2.0 * math.pi * strength * np.sum(dr * r * share, axis=-1)
             power = power + 2.0 * math.pi * strength * friction * self.speed * np.sum(dr * r**2 * share, axis=-1)
         power = power + leakage * abs(self.p_o - self.p_i)
+        # Volumes that a rate of the gap displaces, r^2/2 and r^3/3 - r_i r^2/2, with the same slope of p as above.
+        two, four = moment(2), moment(4)
         damping = 6.0 * math.pi * mu * (three - one**2 / low)
-        return force - self.closing, power, capacity * leakage, damping
+        cone = four / 3.0 - self.r_i * three / 2.0 - (two / 3.0 - self.r_i * one / 2.0) * one / low
+        return force - self.closing, power, capacity * leakage, damping, 12.0 * math.pi * mu * cone
 
     def surplus(self, rise, clearance):
         """Heat made and not carried away (W)."""
-        _, power, carried, _ = self.loads(rise, clearance)
+        _, power, carried, *_ = self.loads(rise, clearance)
         return power - (self.conductance + carried) * rise
 
     def held(self, rises, points=80):
@@ -163,19 +166,22 @@ class OwnSeal:
         """Growth rate (1/s) of a small departure from a state, from two motions of rise and clearance sampled every
         `period` (s): the largest factor of the map from one sample to the next."""
 
-        small = 1e-4
+        small = 1e-5
 
         def rates(_, departure):
             t, c = rise * (1.0 + small * departure[0]), clearance * (1.0 + small * departure[1])
-            excess, _, _, damping = self.loads(t, c)
-            return [
-                float(self.surplus(t, c)) / (self.capacity * rise * small),
-                float(excess / damping) / (clearance * small),
-            ]
+            excess, _, _, damping, cone = self.loads(t, c)
+            warmed = float(self.surplus(t, c)) / self.capacity
+            squeezed = float((excess - cone * self.per_kelvin * warmed) / damping)
+            return np.array([warmed / (rise * small), squeezed / (clearance * small)])
 
+        # A state balances as well as it is known: what is left would be taken for growth.
+        left = rates(0.0, (0.0, 0.0))
         times, sampled = np.arange(4) * period, []
         for start in ((1.0, 0.0), (0.0, 1.0)):
-            motion = solve_ivp(rates, (0.0, times[-1]), start, "Radau", times, rtol=1e-6, atol=1e-6)
+            motion = solve_ivp(
+                lambda t, y: rates(t, y) - left, (0.0, times[-1]), start, "Radau", times, rtol=1e-6, atol=1e-6
+            )
             sampled.append(motion.y)
         before, after = (np.hstack([y[:, s] for y in sampled]) for s in (slice(0, 3), slice(1, 4)))
         factors = np.linalg.eigvals(np.linalg.lstsq(before.T, after.T, rcond=None)[0])

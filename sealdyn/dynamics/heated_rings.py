@@ -96,7 +96,7 @@ class ThermalStates:
         if not self.several:
             self.content = np.array([sum((body.time_constant or 0.0) / body.resistance for body in bodies)])
             self.leaving = np.array([sum(1.0 / body.resistance for body in bodies)])
-            self.turned = sum(body.coning_per_watt / body.resistance for body in bodies)
+            self.coning = np.array([sum(body.coning_per_watt / body.resistance for body in bodies)])
             return
         self.ring = np.concatenate([np.full(len(whole.resistances), k) for k, whole in enumerate(wholes)])
         self.time = np.concatenate([whole.time_constants for whole in wholes])
@@ -122,17 +122,22 @@ class ThermalStates:
         entering = self.immediate * (rise - self.beneath(theta))
         return (self.resistance * entering[self.ring] - theta) / self.time
 
-    def matrix(self, squeezed: np.ndarray, heated: np.ndarray) -> np.ndarray:
+    def coning_rate(self, rates: np.ndarray) -> float:
+        """Of the coning by heat (rad/s), from those of theta (..., states) (K/s), without that of X_0 q."""
+        return rates @ self.coning
+
+    def matrix(self, squeezed: np.ndarray, heated: np.ndarray, arm: float) -> np.ndarray:
         """Rates (1/s) of clearance and theta about a warm state over small changes of these, (1 + states, the same).
 
         `squeezed`, `heated`: slopes of the clearance's rate (m/s) and of the heat that enters the rings (W), over
-        clearance (m), rise (K) and coning by heat (rad).
+        clearance (m), rise (K) and coning by heat (rad); `arm` (m/rad) of the coning's rate beside the clearance's.
         """
         states = len(self.content)
         if not self.several:
             # One state is the rise itself, and coning goes with it.
-            squeezed, heated = ([by[0], by[1] + self.turned * by[2]] for by in (squeezed, heated))
-            return np.array([squeezed, [heated[0], heated[1] - self.leaving[0]] / self.content])
+            squeezed, heated = (np.array([by[0], by[1] + self.coning[0] * by[2]]) for by in (squeezed, heated))
+            warmed = np.array([heated[0], heated[1] - self.leaving[0]]) / self.content
+            return np.array([squeezed - arm * self.coning[0] * warmed, warmed])
         beneath = np.zeros((len(self.immediate), 1 + states))
         beneath[self.ring, 1 + np.arange(states)] = self.share
         coning = np.concatenate([[0.0], self.coning]) - self.immediate_coning @ beneath
@@ -149,4 +154,5 @@ class ThermalStates:
         found[1:] = self.resistance[:, None] * entering[self.ring]
         found[1:, 1:] -= np.eye(states)
         found[1:] /= self.time[:, None]
+        found[0] -= arm * self.coning_rate(found[1:].T)
         return found

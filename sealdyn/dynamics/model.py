@@ -31,8 +31,8 @@ class Model:
     `capture_speed` (m/s) below which a ring on its secondary seal is captured; `algebraic` places of unknowns without
     mass and damping, or of the film's without a rate; `start` the first interval.  The scene names its film, unless a
     `film` is given (Film, films/_contract.py).  `film_error`: relative, of the film's
-    integrals (default a hundredth of the accuracy).  `given` the scene as it was, `heat` its WarmState (None without
-    `[film.heat]`): `scene` is as warm, throughout.
+    integrals (default a hundredth of the accuracy).  `given` the scene as it was, `heat` its WarmState at the start
+    (None without `[film.heat]`): `scene` is as warm, throughout or, where loads change for long, along its `course`.
     """
 
     def __init__(self, scene: Scene, accuracy: float = 1e-6, observed=None, film=None, film_error=None):
@@ -43,6 +43,13 @@ class Model:
             from .warm_state import at_work
 
             scene, self.heat = at_work(scene)
+        self.course = None
+        if self.heat is not None:
+            from .warm_course import followed, with_course
+
+            self.course = followed(self.given)
+            if self.course is not None:
+                scene = with_course(scene, self.given, self.course)
         self._warm = {} if self.heat is None else {float(initially(scene.shaft.speed)): self}
         if scene.stator.elastic is not None:
             from .elastic_ring import at_rest

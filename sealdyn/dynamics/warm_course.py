@@ -1,7 +1,7 @@
 """Temperature and coning over time, while speed, pressures or the sealed liquid's temperature change: aligned faces,
 the film squeezed, the rings with one state of heat in all or, from their drawings, with six each.
 
-    D clearance' = opening force - closing force,   heat that enters the rings = H - density specific_heat Q rise
+    D clearance' + D_c coning' = opening - closing force,  heat that enters the rings = H - density specific_heat Q rise
 
 with the rings' states of heated_rings.py: their faces have one rise.
 **Source** derived; the states of a ring are faces/ring_heat.py's.
@@ -9,15 +9,18 @@ with the rings' states of heated_rings.py: their faces have one rise.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
 
-from ..numerics.piecewise_linear import PiecewiseLinear
+from ..numerics.piecewise_linear import PiecewiseLinear, initially
+from ..scene.film import coned
 from ..scene.variants import frozen_at
 from .heated_rings import ThermalStates
-from .warm_state import Warming, WarmState, warming
+from .interface import Asked
+from .warm_state import Warming, WarmState, unheated, warming
 
 # Relative accuracy of the integration, and absolute of the rise (K).
 ACCURACY, RESOLVED = 1e-6, 1e-5
@@ -29,6 +32,12 @@ LEAST = 1e-6
 STEP, SMALLEST = 1e-6, 1e-2
 # Corrections of the common temperature at most, and the change (K) that is none.
 CORRECTIONS, SAME = 40, 1e-11
+# Over so many time constants of the slower ring loads must change for a run to follow its temperature, and so many
+# later it stays.
+LASTS, SETTLED = 0.05, 8.0
+# What a run's tables of coning and viscosity miss of the course at most, as a share of its range; moments of it that
+# are looked at in a step.
+STRAIGHT, LOOKED_AT = 2e-3, 4
 
 
 @dataclass(frozen=True)
@@ -77,17 +86,60 @@ def breaks(scene) -> list[float]:
     return sorted({0.0} | {t for table in tables if isinstance(table, PiecewiseLinear) for t in table.time if t > 0.0})
 
 
-def course(scene, times, start: WarmState, say: Callable[[float], None] = lambda share: None) -> Course:
+def followed(scene) -> Course | None:
+    """The course of a scene with `[film.heat]` from its warm start until it is settled, remembered; None where its
+    loads do not change for long enough, or where the rings have no time constants."""
+    found, times = warming(scene), breaks(scene)
+    slowest = max(ring.time_constant or 0.0 for ring in found.rings.values())
+    if found.capacity is None or times[-1] <= LASTS * slowest:
+        return None
+    return _followed(Asked(scene), (*times, times[-1] + SETTLED * slowest))
+
+
+@lru_cache(maxsize=16)
+def _followed(asked, times):
+    return course(asked.scene, times, warming(asked.scene).working(), each=LOOKED_AT)
+
+
+def with_course(scene, given, found: Course):
+    """A scene as it works at its start (`at_work` of the scene `given`) with coning and viscosity over time."""
+    cold = given.film.coning
+    cold = [cold.at(t) if isinstance(cold, PiecewiseLinear) else cold for t in found.time]
+    rows = np.array([[c + now.coned_by, now.viscosity] for c, now in zip(cold, found.states, strict=True)])
+    kept = _corners(np.array(found.time), rows / np.maximum(np.ptp(rows, axis=0), 1e-300))
+    coning, viscosity = (
+        PiecewiseLinear(tuple(found.time[k] for k in kept), tuple(map(float, values[kept]))) for values in rows.T
+    )
+    return replace(scene, film=replace(scene.film, coning=coning, viscosity=viscosity))
+
+
+def _corners(time, rows) -> list[int]:
+    """Places of so few points that straight lines between them miss no row (m, n) by more than STRAIGHT."""
+    kept, end = [0], len(time) - 1
+    while kept[-1] < end:
+        first = last = kept[-1]
+        while last < end:
+            share = ((time[first : last + 2] - time[first]) / (time[last + 1] - time[first]))[:, None]
+            line = rows[first] + share * (rows[last + 1] - rows[first])
+            if last > first and np.abs(line - rows[first : last + 2]).max() > STRAIGHT:
+                break
+            last += 1
+        kept.append(last)
+    return kept
+
+
+def course(scene, times, start: WarmState, say: Callable[[float], None] = lambda share: None, each: int = 1) -> Course:
     """The course from one of the `times` (s, increasing) to the last, between which everything is linear, from a
-    `start` in which the rings are settled; `say` is told how much is done.  Method: Radau IIA of SciPy, fifth order."""
+    `start` in which the rings are settled; `say` is told how much is done.  Kept are `each` moments of a step.
+    Method: Radau IIA of SciPy, fifth order."""
     from scipy.integrate import solve_ivp
 
-    whole = warming(scene)
+    whole, cold = warming(scene), unheated(scene)
     rings, unit = ThermalStates(whole.rings), start.clearance
     first = whole.under(frozen_at(scene, times[0]))
     # Clearance, states of the rings, heat made and heat that left (J).
     y, kept, collapsed, near = np.array([1.0, *rings.steady(start.rise), 0.0, 0.0]), [], None, [start.rise]
-    damped, lacking = first.damping(start.rise, unit), [0.0]
+    damped, lacking = first.damping(start.rise, unit)[0], [0.0]
 
     def here(t):
         return whole.under(frozen_at(scene, float(t)))
@@ -98,8 +150,9 @@ def course(scene, times, start: WarmState, say: Callable[[float], None] = lambda
         now = film_between(rings, found, theta, clearance, near[0])
         near[0], carried = now.rise, now.carried * now.rise
         warming_up = rings.rates(theta, now.rise) if rings.several else [found.surplus(now) / rings.content[0]]
-        damping = max(found.damping(now.rise, clearance, now.coned_by), LEAST * damped)
-        squeezed = now.excess / (damping * unit)
+        axial, turning = found.damping(now.rise, clearance, now.coned_by)
+        turned = turning * (inside[2] + rings.coning_rate(np.asarray(warming_up)))
+        squeezed = (now.excess - turned) / (max(axial, LEAST * damped) * unit)
         return np.array([squeezed, *warming_up, now.power, float(rings.leaving @ theta) + carried])
 
     def jacobian(t, y):
@@ -120,8 +173,18 @@ def course(scene, times, start: WarmState, say: Callable[[float], None] = lambda
     for begin, end in pairwise(times):
         # At a step of a table the value is that of the piece.
         inside = np.nextafter(begin, end), np.nextafter(end, begin)
-        part = solve_ivp(rates, (begin, end), y, "Radau", rtol=ACCURACY, atol=scale, events=closed, jac=jacobian)
-        for t, column in list(zip(part.t, part.y.T, strict=True))[1 if kept else 0 :]:
+        # Coning that is not by heat turns at one rate: by a table, by pressures or the sealed temperature.
+        turned = np.diff([initially(coned(frozen_at(cold, t)).coning) for t in inside])
+        inside = (*inside, float(turned[0]) / (end - begin))
+        part = solve_ivp(
+            rates, (begin, end), y, "Radau", rtol=ACCURACY, atol=scale, events=closed, jac=jacobian,
+            dense_output=each > 1,
+        )  # fmt: skip
+        moments, columns = part.t, part.y
+        if each > 1:
+            moments = np.interp(np.arange(each * (len(part.t) - 1) + 1) / each, np.arange(len(part.t)), part.t)
+            columns = part.sol(moments)
+        for t, column in list(zip(moments, columns.T, strict=True))[1 if kept else 0 :]:
             clearance = max(float(column[0]), CLOSED) * unit
             found = here(min(max(t, inside[0]), inside[1]))
             lacking.append(abs(column[-2] - column[-1] - float(rings.content @ (column[1:-2] - start.rise))))

@@ -6,9 +6,10 @@ over the heat that enters it, X (rad/W), its coning over that heat.  With G = su
     H = torque x relative speed + Q |p_o - p_i| = (G + density specific_heat Q) rise
     coning = cold coning + B rise,   viscosity at T,   clearance: film + asperities = closing force
 
-and in time, the film squeezed with the damping D,
+and in time, the film squeezed with the dampings D, D_c of clearance and coning,
 
-    C rise' = H - (G + density specific_heat Q) rise,  C = sum time_constant/R,  D clearance' = opening - closing force
+    C rise' = H - (G + density specific_heat Q) rise,  C = sum time_constant/R
+    D clearance' + D_c coning' = opening - closing force
 
 or, of rings from their drawings, with the states of heated_rings.py: quick and late coning may oppose each other, and a
 seal that is pressurised inside then hunts before heat loses its balance.
@@ -26,7 +27,16 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
-from ..faces.geometry import CONTACT_FORCE, CONTACT_TORQUE, DZ_RATE, FLOW_INNER, FORCE, SPIN_DIFFERENCE, TORQUE
+from ..faces.geometry import (
+    CONING_RATE,
+    CONTACT_FORCE,
+    CONTACT_TORQUE,
+    DZ_RATE,
+    FLOW_INNER,
+    FORCE,
+    SPIN_DIFFERENCE,
+    TORQUE,
+)
 from ..numerics.piecewise_linear import PiecewiseLinear, initially
 from ..scene.contact import waves_of
 from ..scene.film import coned
@@ -169,16 +179,20 @@ class Warming:
             self.coning_per_kelvin * rise if coned_by is None else coned_by,
         )  # fmt: skip
 
-    def damping(self, rise: float, clearance: float, coned_by: float | None = None) -> float:
-        """Axial damping (N s/m) of the film at a rise (K) and a clearance (m); `coned_by` as in `at`."""
-        scene, forces = self.at(rise, clearance, coned_by), []
-        interface = Interface(scene, FINE)
-        for rate in (-clearance, clearance):
+    def damping(self, rise: float, clearance: float, coned_by: float | None = None) -> np.ndarray:
+        """Damping of the film, of rates of the clearance (N s/m) and of the coning (N s/rad), at a rise (K) and a
+        clearance (m); `coned_by` as in `at`."""
+        scene = self.at(rise, clearance, coned_by)
+        interface, wide = Interface(scene, FINE), scene.film.outer_radius - scene.film.inner_radius
+
+        def force(place, rate):
             s, _ = rest_state(scene, clearance)
-            s[DZ_RATE] = rate
+            s[place] = rate
             interface.film_wrench(interface.f, s)
-            forces.append(s[FORCE])
-        return float(forces[0] - forces[1]) / (2.0 * clearance)
+            return s[FORCE]
+
+        rates = (DZ_RATE, clearance), (CONING_RATE, clearance / wide)
+        return np.array([(force(place, -rate) - force(place, rate)) / (2.0 * rate) for place, rate in rates])
 
     def surplus(self, state: WarmState) -> float:
         """Heat (W) that is made and not carried away in a state."""
@@ -282,7 +296,8 @@ class Warming:
 
         slopes = [(film_at(*(at + d)) - film_at(*(at - d))) / (2.0 * d.sum()) for d in np.diag(steps)]
         squeezed, heated = np.transpose(slopes)
-        matrix = ThermalStates(self.rings).matrix(squeezed / self.damping(state.rise, state.clearance), heated)
+        axial, turning = self.damping(state.rise, state.clearance)
+        matrix = ThermalStates(self.rings).matrix(squeezed / axial, heated, turning / axial)
         values = np.linalg.eigvals(matrix)
         slowest = values[np.argmax(values.real)]
         return complex(slowest.real, abs(slowest.imag))

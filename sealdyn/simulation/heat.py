@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..dynamics.run_state import Caution, Concern
-from ..dynamics.warm_course import breaks
+from ..dynamics.warm_course import breaks, followed
 from ..dynamics.warm_state import Warming, WarmState, warming
 from ..numerics.piecewise_linear import initially
 from ..quantities import in_words
@@ -178,7 +178,7 @@ def heat_cautions(scene, state: WarmState, friction: float = math.nan) -> list[C
         words += [f"{said} ({' and '.join(names)})"] if names else []
     if is_another(friction, counted(state)):
         words.append(f"the run makes {friction:.4g} W by friction, {counted(state):.4g} W are counted")
-    if len(breaks(scene)) > 1:
+    if len(breaks(scene)) > 1 and followed(scene) is None:
         words.append("temperature and coning stay those of the start, though loads change: study warm-up follows them")
     share = state.carried * state.rise / state.power if state.power else 0.0
     if share > CARRIES:

@@ -206,9 +206,9 @@ RPM = np.pi / 30
 
 
 @pytest.mark.core
-@pytest.mark.parametrize(("squeeze", "period"), [(1e-6, 16.0), (1.0, 30.0)])
+@pytest.mark.parametrize(("squeeze", "period"), [(1e-6, 16.0), (1.0, 25.0)])
 def test_the_program_says_from_where_on_that_seal_hunts_and_folds(squeeze, period, monkeypatch):
-    """The squeeze of the film leaves the onset and doubles the period."""
+    """The squeeze of the film by clearance and cone leaves the onset and lengthens the period."""
     damping = Warming.damping
     monkeypatch.setattr(Warming, "damping", lambda self, *at: squeeze * damping(self, *at))
     found = sealdyn.study("equilibrium", inside(6500), points=11).answer
@@ -241,7 +241,7 @@ def test_a_fold_far_below_the_speed_is_found():
 def test_a_state_that_hunts_does_not_work():
     """Its balance is told with its period, a run is refused; beyond the fold there is no row."""
     first, thin = sealdyn.study("equilibrium", inside(7500), points=11).answer["roots"]
-    assert not first["stable"] and first["heat"]["hunting_period"] == pytest.approx(30.0, rel=0.2)
+    assert not first["stable"] and first["heat"]["hunting_period"] == pytest.approx(25.0, rel=0.2)
     assert not thin["stable"] and thin["heat"]["hunting_period"] is None
     with pytest.raises(sealdyn.ScenarioError) as error:
         sealdyn.run(inside(7500))

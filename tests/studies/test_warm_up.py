@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
+from warm_seals import warm_seal
 
 import sealdyn
+from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.warm_state import Warming, warming
 from sealdyn.studies.wear.study import INFO
 
@@ -38,10 +40,23 @@ def test_start_of_the_pump_is_that_of_an_independent_program(pump, monkeypatch, 
     assert found["energy_residual"] < 1e-9
 
 
-def test_squeeze_of_the_film_delays_the_start(pump, tmp_path):
-    found = sealdyn.run_study("warm-up", pump, tmp_path / "found.h5", flags={"start": 1.0, "hold": 1.0})
-    rise = float(np.interp(0.5, found["time"], found["rise"]))
-    assert 0.97 * START[0][1] < rise < 0.999 * START[0][1]
+@pytest.mark.parametrize("drawn", [False, True])
+def test_a_run_in_time_follows_the_same_course(drawn, pump, tmp_path):
+    """Faces that cone as they warm suck a smooth film thinner at first, which rings in motion show, too; of loads that
+    change faster than rings warm the temperature of the start is kept."""
+    table = {"time": [0.0, 2.0], "value": [30.0, 308.9]}
+    seal = sealdyn.example("pump_seal") if drawn else warm_seal({"film.coning": 5e-5})
+    seal = seal.with_({"shaft.speed": table, "run.duration": 1.8, "run.accuracy": 1e-4, "rotor.runout": 1e-9})
+    found = sealdyn.study("warm-up", seal, begin="warm").answer
+    expected = CubicSpline(found["time"], found["clearance"])
+    run = sealdyn.simulate(seal, tmp_path / "run.h5")
+    time, thinnest = run.data.time.values, run.data.h_min.values
+    assert run.status == "ok"
+    assert thinnest == pytest.approx(expected(time), rel=0.01)
+    assert 0.6 < thinnest.min() / thinnest[0] < (1.0 if drawn else 0.8)
+    assert Model(seal.scene).course.residual < 1e-9
+    quick = seal.with_({"shaft.speed": {"time": [0.0, 0.02], "value": [30.0, 308.9]}})
+    assert Model(quick.scene).course is None
 
 
 @pytest.mark.parametrize("rings", [RINGS, None])
@@ -80,7 +95,7 @@ def test_warm_up_needs_time_constants(pump, tmp_path):
 
 
 def test_a_temperature_that_stays_while_the_speed_changes_is_told(pump):
-    turning = pump.with_({"run.turns": 1, "shaft.speed": {"time": [0.0, 1.0], "value": [308.0, 309.0]}})
+    turning = pump.with_({"run.turns": 1, "shaft.speed": {"time": [0.0, 0.05], "value": [308.0, 309.0]}})
     told = {name: sealdyn.run(scenario).summary["warnings"] for name, scenario in (("held", pump), ("ramp", turning))}
     assert sum("heat" in line for line in told["ramp"]) == sum("heat" in line for line in told["held"]) + 1
 
