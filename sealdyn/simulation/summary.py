@@ -295,8 +295,10 @@ def _heat(model, tally):
 
 
 def settled_friction(model, tally):
-    """Mean friction (W) of a run of one speed, which its heat may be compared with; of others nan."""
-    return math.nan if isinstance(model.given.shaft.speed, PiecewiseLinear) else tally.mean("friction_power")
+    """Mean friction (W) of a run whose loads stay, which its heat may be compared with; of others nan."""
+    from ..dynamics.warm_course import breaks
+
+    return math.nan if len(breaks(model.given)) > 1 else tally.mean("friction_power")
 
 
 def _temperature_rise(model, tally):
