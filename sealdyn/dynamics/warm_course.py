@@ -52,6 +52,12 @@ class Course:
     residual: float
     collapsed: float | None
 
+    def at(self, t: float) -> dict:
+        """Rise (K), coning by heat (rad), viscosity (Pa s) and the residual of the whole, at a time (s)."""
+        names = {"rise": "rise", "coning_by_heat": "coned_by", "viscosity": "viscosity"}
+        found = {key: np.interp(t, self.time, [getattr(now, of) for now in self.states]) for key, of in names.items()}
+        return {**{key: float(value) for key, value in found.items()}, "energy_residual": self.residual}
+
 
 def film_between(rings: ThermalStates, found: Warming, theta: np.ndarray, clearance: float, rise: float) -> WarmState:
     """The state of the film at a clearance (m) between rings in states theta (K), its rise looked for from a `rise` (K)

@@ -221,8 +221,10 @@ def _heat_lines(heat) -> Iterator[Line]:
     """The warm state: temperature and coning, and as details what the faces were before and where the heat goes."""
     coned, cold = heat["coning_by_heat"], heat["cold"]
     faces = heat["face_temperature"] - ZERO_CELSIUS
+    end = heat.get("end")
+    then = [("in the end", end["rise"], "temperature"), ("coning", end["coning_by_heat"], "tilt")] if end else []
     yield Line("heat", [("faces", faces, "degC"), ("by heat", heat["rise"], "temperature"),
-                        ("coning", heat["coning"], "tilt"), ("of it by heat", coned, "tilt")])  # fmt: skip
+                        ("coning", heat["coning"], "tilt"), ("of it by heat", coned, "tilt"), *then])  # fmt: skip
     if cold["clearance"] is not None:
         before = ("unheated: clearance", cold["clearance"], "clearance")
         yield Line("", [before, ("leakage", cold["leakage"], "leakage"), ("friction", cold["power"], "power")])

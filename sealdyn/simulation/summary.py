@@ -97,7 +97,7 @@ def parts(scenario, run, plan, outcome, tally, speeds: bool = True) -> dict:
             "max_power": tally.most("friction_power"),
             "temperature_rise": _temperature_rise(model, tally),
         },
-        "heat": lambda: None if model.heat is None else _heat(model, tally),
+        "heat": lambda: None if model.heat is None else _heat(model, tally, run.end_time(outcome.segment, outcome.tau)),
         "contact": _contact(run, outcome, tally),
         "secondary_seal": _secondary_seal(run),
         "film": _film(model, at, linear, tally, failed),
@@ -287,11 +287,12 @@ def _leakage(model, tally):
     }
 
 
-def _heat(model, tally):
+def _heat(model, tally, end):
     # Loaded only where a ring takes heat.
     from .heat import heat_of
 
-    return heat_of(model.given, model.heat, settled_friction(model, tally))
+    at_end = None if model.course is None else model.course.at(end)
+    return {**heat_of(model.given, model.heat, settled_friction(model, tally)), "end": at_end}
 
 
 def settled_friction(model, tally):

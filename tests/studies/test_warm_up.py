@@ -53,6 +53,8 @@ def test_a_run_in_time_follows_the_same_course(drawn, pump, tmp_path):
     time, thinnest = run.data.time.values, run.data.h_min.values
     assert run.status == "ok"
     assert thinnest == pytest.approx(expected(time), rel=0.01)
+    rise = float(CubicSpline(found["time"], found["rise"])(1.8))
+    assert run.summary["heat"]["end"]["rise"] == pytest.approx(rise, rel=0.01)
     assert 0.6 < thinnest.min() / thinnest[0] < (1.0 if drawn else 0.8)
     assert Model(seal.scene).course.residual < 1e-9
     quick = seal.with_({"shaft.speed": {"time": [0.0, 0.02], "value": [30.0, 308.9]}})
