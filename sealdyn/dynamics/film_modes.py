@@ -300,7 +300,7 @@ def tilts_over_speed(at_speed, reference: float, direction: float = 1.0):
     ends = []
     for first, last, between in zip(*found, strict=True):
         slope = (last - first) / SPEEDS[1]
-        if np.any(np.abs(first + slope - between).max(axis=1) > LINEAR * np.abs(between).max(axis=1)):
+        if not np.all(np.abs(first + slope - between).max(axis=1) <= LINEAR * np.abs(between).max(axis=1)):
             return None
         ends.append((first, slope / reference))
 

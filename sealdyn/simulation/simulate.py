@@ -71,9 +71,8 @@ def going_on(scenario: Scenario, out: Path) -> Scenario:
     """The scenario that an interrupted run goes on with: where it was done once more with its own friction, that."""
     source = archive.partial_path(out) if archive.partial_path(out).exists() else out
     more = list(archive.read_info(source).get("overrides", ()))[len(scenario.overrides) :] if source.exists() else []
-    if len(more) != 1 or not str(more[0]).startswith(f"{FRICTION}="):
-        return scenario
-    return with_values(scenario, {FRICTION: float(str(more[0]).partition("=")[2])})
+    key, _, value = str(more[0]).partition("=") if len(more) == 1 else ("", "", "")
+    return with_values(scenario, {FRICTION: value}) if key == FRICTION else scenario
 
 
 def _simulate(scenario, out, progress, stop, resume, allow_large) -> tuple[Result, float | None]:

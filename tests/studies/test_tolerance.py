@@ -483,7 +483,7 @@ def test_an_interrupted_study_goes_on(tmp_path, closed_form):
 @pytest.mark.slow
 def test_a_killed_study_goes_on_without_repeating(tmp_path):
     command = [
-        *COMMAND, "tolerance", str(PATH), "--scatter", "rotor.runout=normal(5 urad)", "--samples", "8", "--set",
+        *COMMAND, "tolerance", str(PATH), "--scatter", "rotor.runout=normal(5 urad)", "--samples", "16", "--set",
         "run.turns=3000", "--out", str(tmp_path / "t.h5"), "--workers", "1", "--no-plot", "--json",
     ]  # fmt: skip
     journal = tmp_path / "t.partial.jsonl"
@@ -492,7 +492,7 @@ def test_a_killed_study_goes_on_without_repeating(tmp_path):
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     answer = json.loads(done.stdout)
     assert answer["samples"]["outputs"]["h_min.value"].count(0.123456) == 1 and not journal.exists()
-    assert "24 runs (8 samples x (1 keys + 2))" in done.stderr
+    assert "48 runs (16 samples x (1 keys + 2))" in done.stderr
 
 
 def test_chart_and_tables_show_the_answer(tmp_path, closed_form):
