@@ -33,12 +33,12 @@ if sys.dont_write_bytecode:
     os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
     os.environ["PYTHONPYCACHEPREFIX"] = sys.pycache_prefix
 
-# Matrices here are small: threads of BLAS made some cases dearer by half and none quicker.
-for name in ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"):
-    os.environ.setdefault(name, "1")
-
 # Stale kernels are dropped by this import: once, before several processes begin to compile new ones.
 import sealdyn  # noqa: E402, F401
+from sealdyn.numerics.interruption import one_thread  # noqa: E402
+
+# Matrices here are small: threads of BLAS made some cases dearer many times and none quicker.
+one_thread()
 
 # In SI a picometre is something: `approx` forgives 1e-12 of anything unless it is told not to.
 type(pytest.approx(1.0)).DEFAULT_ABSOLUTE_TOLERANCE = 0.0

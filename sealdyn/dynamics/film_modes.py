@@ -112,10 +112,7 @@ class ReducedFilm:
         """Matrices (N, N) of `left y = p right y` on y = (displacements, rates, parts of the basis), and factors (N,)
         of their rows and columns that make their elements alike."""
         film, gap, n = self.film, linear.gap, len(linear.mass)
-        # The rings' matrices have the film of slow motion: here its unknowns are their own.
-        stiffness, damping = film.slow
-        stiffness = linear.stiffness - gap.T @ (stiffness + film.force_by_gap) @ gap
-        damping = linear.damping - gap.T @ (damping + film.force_by_gap_rate) @ gap
+        stiffness, damping = beside_unknowns(linear)
         stored = self.basis.T @ self.stored
         r = len(stored)
         force = gap.T @ (film.force_by_x * film.scales) @ self.basis
@@ -141,6 +138,16 @@ def even(sizes) -> tuple[np.ndarray, np.ndarray]:
         now = sizes * rows[:, None] * columns
         rows, columns = rows / np.sqrt(now.max(axis=1)), columns / np.sqrt(now.max(axis=0))
     return rows, columns
+
+
+def beside_unknowns(linear) -> tuple[np.ndarray, np.ndarray]:
+    """Stiffness and damping (n, n) of a `LinearScene` without what its film's unknowns do: the rings' matrices have the
+    film of slow motion, and here its unknowns are their own."""
+    film, gap, (stiffness, damping) = linear.film, linear.gap, linear.film.slow
+    return (
+        linear.stiffness - gap.T @ (stiffness + film.force_by_gap) @ gap,
+        linear.damping - gap.T @ (damping + film.force_by_gap_rate) @ gap,
+    )
 
 
 def reach_of(linear) -> float:
@@ -259,7 +266,7 @@ def tilt_pencil(linear) -> tuple[np.ndarray, np.ndarray] | None:
     film, gap, n = linear.film, linear.gap, len(linear.mass)
     if film.combinations is None or linear.rest is not None:
         return None
-    few, (slow_k, slow_d), (angles, cells) = film.few, film.slow, film.around
+    few, (angles, cells), (stiffness, damping) = film.few, film.around, beside_unknowns(linear)
     kinds = len(film.scales) // (angles * cells)
     each = len(few.scales) // (3 * kinds)
     cosines = (each * (3 * np.arange(kinds)[:, None] + 1) + np.arange(each)).ravel()
@@ -272,8 +279,6 @@ def tilt_pencil(linear) -> tuple[np.ndarray, np.ndarray] | None:
         alike.append(apart <= LINEAR * np.abs(matrix).max())
         return parts[0][0] + 1j * parts[1][0]
 
-    stiffness = linear.stiffness - gap.T @ (slow_k + film.force_by_gap) @ gap
-    damping = linear.damping - gap.T @ (slow_d + film.force_by_gap_rate) @ gap
     one, none = np.eye(n // 3), np.zeros((n // 3, n // 3))
     pushed = [turning(by @ gap, waves, tilts) for by in (few.by_gap, few.by_gap_rate)]
     pushes = turning(gap.T @ few.force_by_x, tilts, waves)
@@ -318,7 +323,7 @@ def tilts_over_speed(at_speed, reference: float, direction: float = 1.0):
 
 def errors_of(values) -> np.ndarray:
     """Bounds on the errors of eigenvalues (..., m) (1/s) of rings and a film that stores."""
-    return STORED * np.abs(values) + 1e-15 * np.nanmax(np.abs(values), axis=-1, initial=0.0, keepdims=True)
+    return STORED * np.abs(values) + ROUNDING * np.nanmax(np.abs(values), axis=-1, initial=0.0, keepdims=True)
 
 
 def _unsettled(p, left) -> SceneError:

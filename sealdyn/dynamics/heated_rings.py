@@ -96,6 +96,7 @@ class ThermalStates:
         if not self.several:
             self.content = np.array([sum((body.time_constant or 0.0) / body.resistance for body in bodies)])
             self.leaving = np.array([sum(1.0 / body.resistance for body in bodies)])
+            self.time = self.content / self.leaving
             self.coning = np.array([sum(body.coning_per_watt / body.resistance for body in bodies)])
             return
         self.ring = np.concatenate([np.full(len(whole.resistances), k) for k, whole in enumerate(wholes)])

@@ -32,8 +32,8 @@ LEAST = 1e-6
 STEP, SMALLEST = 1e-6, 1e-2
 # Corrections of the common temperature at most, and the change (K) that is none.
 CORRECTIONS, SAME = 40, 1e-11
-# Over so many time constants of the slower ring loads must change for a run to follow its temperature, and so many
-# later it stays.
+# Over so many time constants of the slower ring loads must change for a run to follow its temperature, and so many of
+# the slowest state later it stays.
 LASTS, SETTLED = 0.05, 8.0
 # What a run's tables of coning and viscosity miss of the course at most, as a share of its range; moments of it that
 # are looked at in a step.
@@ -96,9 +96,9 @@ def followed(scene) -> Course | None:
     """The course of a scene with `[film.heat]` from its warm start until it is settled, remembered; None where its
     loads do not change for long enough, or where the rings have no time constants."""
     found, times = warming(scene), breaks(scene)
-    slowest = max(ring.time_constant or 0.0 for ring in found.rings.values())
-    if found.capacity is None or times[-1] <= LASTS * slowest:
+    if found.capacity is None or times[-1] <= LASTS * max(ring.time_constant for ring in found.rings.values()):
         return None
+    slowest = float(np.max(ThermalStates(found.rings).time))
     return _followed(Asked(scene), (*times, times[-1] + SETTLED * slowest))
 
 
@@ -157,8 +157,8 @@ def course(scene, times, start: WarmState, say: Callable[[float], None] = lambda
         near[0], carried = now.rise, now.carried * now.rise
         warming_up = rings.rates(theta, now.rise) if rings.several else [found.surplus(now) / rings.content[0]]
         axial, turning = found.damping(now.rise, clearance, now.coned_by)
-        turned = turning * (inside[2] + rings.coning_rate(np.asarray(warming_up)))
-        squeezed = (now.excess - turned) / (max(axial, LEAST * damped) * unit)
+        coning_rate = cold_rate + rings.coning_rate(np.asarray(warming_up))
+        squeezed = (now.excess - turning * coning_rate) / (max(axial, LEAST * damped) * unit)
         return np.array([squeezed, *warming_up, now.power, float(rings.leaving @ theta) + carried])
 
     def jacobian(t, y):
@@ -180,8 +180,8 @@ def course(scene, times, start: WarmState, say: Callable[[float], None] = lambda
         # At a step of a table the value is that of the piece.
         inside = np.nextafter(begin, end), np.nextafter(end, begin)
         # Coning that is not by heat turns at one rate: by a table, by pressures or the sealed temperature.
-        turned = np.diff([initially(coned(frozen_at(cold, t)).coning) for t in inside])
-        inside = (*inside, float(turned[0]) / (end - begin))
+        at_first, at_last = (initially(coned(frozen_at(cold, t)).coning) for t in inside)
+        cold_rate = (at_last - at_first) / (end - begin)
         part = solve_ivp(
             rates, (begin, end), y, "Radau", rtol=ACCURACY, atol=scale, events=closed, jac=jacobian,
             dense_output=each > 1,

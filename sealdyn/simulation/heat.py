@@ -178,8 +178,11 @@ def heat_cautions(scene, state: WarmState, friction: float = math.nan) -> list[C
         words += [f"{said} ({' and '.join(names)})"] if names else []
     if is_another(friction, counted(state)):
         words.append(f"the run makes {friction:.4g} W by friction, {counted(state):.4g} W are counted")
-    if len(breaks(scene)) > 1 and followed(scene) is None:
+    course = followed(scene) if len(breaks(scene)) > 1 else None
+    if course is None and len(breaks(scene)) > 1:
         words.append("temperature and coning stay those of the start, though loads change: study warm-up follows them")
+    elif course is not None and course.collapsed is not None:
+        words.append(f"the aligned film collapses at {course.collapsed:.4g} s; temperature and coning are then held")
     share = state.carried * state.rise / state.power if state.power else 0.0
     if share > CARRIES:
         words.append(f"leakage carries {100 * share:.3g} % of the heat: the rise is at most half as high as told")

@@ -50,7 +50,8 @@ def main(file):
         f"{len(found)} scenes, {len(compiled) // 2} kernels compiled, {time.process_time() - begun:.0f} s", flush=True
     )
     if first:
-        return file.write_text(json.dumps(found)) and 0
+        file.write_text(json.dumps(found))
+        return 0
     kept = json.loads(file.read_text())
     other = [scene for scene in SCENES if found[scene] != kept[scene]]
     print(f"other bits: {', '.join(other) or 'none'}")

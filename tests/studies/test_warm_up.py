@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
-from warm_seals import warm_seal
+from warm_seals import INSIDE, warm_seal
 
 import sealdyn
 from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.warm_state import Warming, warming
+from sealdyn.simulation.heat import heat_cautions
 from sealdyn.studies.wear.study import INFO
 
 RINGS = {
@@ -59,6 +60,15 @@ def test_a_run_in_time_follows_the_same_course(drawn, pump, tmp_path):
     assert Model(seal.scene).course.residual < 1e-9
     quick = seal.with_({"shaft.speed": {"time": [0.0, 0.02], "value": [30.0, 308.9]}})
     assert Model(quick.scene).course is None
+
+
+def test_a_film_that_collapses_on_the_way_is_told():
+    found = []
+    for speed in (400.0, 1500.0):
+        model = Model(warm_seal(INSIDE, {"shaft.speed": {"time": [0.0, 1.0], "value": [300.0, speed]}}).scene)
+        found.append((model.course.collapsed is not None, len(heat_cautions(model.given, model.heat))))
+    (steady, few), (collapsed, more) = found
+    assert collapsed and not steady and more == few + 1
 
 
 @pytest.mark.parametrize("rings", [RINGS, None])
