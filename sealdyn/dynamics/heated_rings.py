@@ -2,7 +2,8 @@
 cooling.
 
 **Source** faces/ring_heat.py for a ring from its drawing, closed_form/ring_fin.py for its convection by speed.
-**Valid** convection at the largest speed of the scene and the temperature of the sealed liquid, whatever the speed.
+**Valid** convection at the largest speed of the scene, which stays while that changes, and at the temperature of the
+sealed liquid.
 """
 
 from dataclasses import dataclass
@@ -15,8 +16,7 @@ from ..scene.liquid import liquid_of
 from .intervals import largest_value
 
 if TYPE_CHECKING:
-    from ..faces.ring_heat import RingHeat
-
+    from ..faces.ring_coning import RingBody
 
 # Speed (rad/s) at least.
 STANDING = 1.0
@@ -27,7 +27,7 @@ class HeatedBody:
     """A ring's `resistance` (K/W), `coning_per_watt` (rad/W) and `time_constant` (s, None where it is not known); of
     one from its drawing also its `convection` (W/(m^2 K)), the Reynolds number of that by its speed and whether it is
     `extrapolated`, its hottest place and the O-ring's over the face's mean rise, h w/k, whether its band is `narrow` or
-    the ring `long`, and all that is known of it (`whole`)."""
+    the ring `long`, and what it was `drawn` as."""
 
     resistance: float
     coning_per_watt: float
@@ -40,7 +40,7 @@ class HeatedBody:
     biot: float | None = None
     narrow: bool = False
     long: bool = False
-    whole: "RingHeat | None" = None
+    drawn: "RingBody | None" = None
 
 
 def heated_body(scene, name: str, cooling: float = 1.0) -> HeatedBody:
@@ -74,7 +74,7 @@ def heated_body(scene, name: str, cooling: float = 1.0) -> HeatedBody:
     return HeatedBody(
         found.resistance, found.coning_per_watt, found.time_constant, convection,
         cooled and cooled.reynolds, bool(cooled and cooled.extrapolated), found.hottest, found.at_o_ring, found.biot,
-        film.outer_radius - film.inner_radius < drawn.width / 3.0, body.length > 4.0 * drawn.width, found,
+        film.outer_radius - film.inner_radius < drawn.width / 3.0, body.length > 4.0 * drawn.width, drawn,
     )  # fmt: skip
 
 
@@ -91,17 +91,19 @@ class ThermalStates:
 
     def __init__(self, rings: dict[str, HeatedBody]):
         bodies = list(rings.values())
-        wholes = [body.whole for body in bodies if body.whole is not None]
-        self.several = len(wholes) == len(bodies)
+        self.several = all(body.drawn is not None for body in bodies)
         if not self.several:
             self.content = np.array([sum((body.time_constant or 0.0) / body.resistance for body in bodies)])
             self.leaving = np.array([sum(1.0 / body.resistance for body in bodies)])
             self.time = self.content / self.leaving
             self.coning = np.array([sum(body.coning_per_watt / body.resistance for body in bodies)])
             return
+        from ..faces.ring_heat import ring_states
+
+        wholes = [ring_states(body.drawn) for body in bodies]
         self.ring = np.concatenate([np.full(len(whole.resistances), k) for k, whole in enumerate(wholes)])
         self.time = np.concatenate([whole.time_constants for whole in wholes])
-        self.resistance = np.array([whole.resistance for whole in wholes])[self.ring]
+        self.resistance = np.array([body.resistance for body in bodies])[self.ring]
         self.share, self.coning, self.content, self.leaving = (
             np.concatenate([getattr(whole, name) for whole in wholes]) / self.resistance
             for name in ("resistances", "conings", "contents", "leaving")

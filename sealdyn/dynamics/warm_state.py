@@ -100,13 +100,24 @@ class Warming:
     def __init__(self, scene, cooling: float = 1.0):
         cold = unheated(scene)
         self.law, self.said = closing_law(cold, opening_law(cold))
-        self.rings = {name: heated_body(scene, name, cooling) for name in scene.film.heat.rings}
+        self.cooling = cooling
+        self._cool(scene)
+        self._begin(scene)
+
+    def _cool(self, scene):
+        self.rings = {name: heated_body(scene, name, self.cooling) for name in scene.film.heat.rings}
         self.conductance = sum(1.0 / ring.resistance for ring in self.rings.values())
         self.coning_per_kelvin = sum(ring.coning_per_watt / ring.resistance for ring in self.rings.values())
         known = all(ring.time_constant is not None for ring in self.rings.values())
         stored = sum((ring.time_constant or 0.0) / ring.resistance for ring in self.rings.values())
         self.capacity = stored if known and stored > 0.0 else None
-        self._begin(scene)
+
+    def at_speed(self, speed: float) -> "Warming":
+        """The same closing force law at a shaft speed (rad/s) that stays: rings are cooled as it moves the liquid."""
+        scene = replace(self.scene, shaft=replace(self.scene.shaft, speed=speed))
+        other = self.under(scene)
+        other._cool(scene)
+        return other
 
     def under(self, scene) -> "Warming":
         """The same rings and closing force law at the conditions of another scene: speed, pressures, temperature."""
@@ -414,7 +425,7 @@ def at_work(scene, speed: float | None = None, near: WarmState | None = None):
         return (scene if scene.film.liquid is None else unheated(scene)), None
     found = warming(scene)
     if speed is not None:
-        found = found.under(replace(scene, shaft=replace(scene.shaft, speed=speed)))
+        found = found.at_speed(speed)
     state = found.working(near)
     if state is None and near is not None:
         raise NoWarmState("shaft.speed", f"no warm state at {speed:.6g} rad/s", "a speed whose heat is carried away")

@@ -9,8 +9,9 @@ tests/ladder/test_heated_ring.py.
 constant within 1 %, the hottest place within 1.2 %.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import cho_solve_banded, cholesky_banded, eigh
@@ -70,6 +71,11 @@ class RingHeat:
     """Height of the band's edges beyond its cone, m/W."""
     biot: float
     """Convection times width over conductivity."""
+
+
+class RingStates(NamedTuple):
+    """Slow answers of a ring to the heat through its face."""
+
     time_constants: np.ndarray
     """Of the reduced states, s, (6,), slowest first."""
     resistances: np.ndarray
@@ -88,38 +94,45 @@ class RingHeat:
 
 @lru_cache(maxsize=64)
 def ring_heat(body: RingBody) -> RingHeat:
-    """The numbers of a ring, solved on the grid (some milliseconds)."""
+    """The steady numbers of a ring, solved on the grid (a millisecond)."""
     ring = conduction(body)
     steady = ring.answer(ring.flux)
     resistance = float(ring.flux @ steady) + ring.immediate_resistance
-    coning = float(ring.coning @ steady) + ring.immediate_coning
-    moment = float(steady @ (ring.capacity * steady)) / resistance
-    times, resistances, conings, contents, leaving = _reduced(ring, moment)
     flux = 1 / _annulus(body.face_inner_radius, body.face_outer_radius)
     band = ring.flux[:RADIAL] > 0
     half = ring.depths[1] / 2
     hottest = float(np.max(steady[:RADIAL][band])) + flux * half / body.conductivity
     return RingHeat(
         resistance,
-        coning,
-        moment,
+        float(ring.coning @ steady) + ring.immediate_coning,
+        float(steady @ (ring.capacity * steady)) / resistance,
         hottest / resistance,
         _at_o_ring(body, ring, steady) / resistance,
         crown(body, flux),
         body.convection * body.width / body.conductivity,
+    )
+
+
+@lru_cache(maxsize=64)
+def ring_states(body: RingBody) -> RingStates:
+    """What the ring does in time, by six states (two milliseconds)."""
+    found = ring_heat(body)
+    times, resistances, conings, contents, leaving = _reduced(conduction(body), found.time_constant)
+    return RingStates(
         times,
         resistances,
         conings,
         contents,
         leaving,
-        resistance - float(np.sum(resistances)),
-        coning - float(np.sum(conings)),
+        found.resistance - float(np.sum(resistances)),
+        found.coning_per_watt - float(np.sum(conings)),
     )
 
 
+@lru_cache(maxsize=8)
 def conduction(body: RingBody) -> Conduction:
     """The grid and matrices of a ring."""
-    edges, depths = _radii(body), body.length * np.linspace(0.0, 1.0, AXIAL + 1) ** GRADING
+    edges, depths = _radii(body), _depths(body)
     k, sizes = body.conductivity, np.diff(depths)
     areas, middles = _annulus(edges[:-1], edges[1:]), (edges[1:] + edges[:-1]) / 2
     half = sizes[0] / 2
@@ -149,7 +162,7 @@ def conduction(body: RingBody) -> Conduction:
     capacity = body.density * body.specific_heat * areas * sizes[:, None]
     flux = np.zeros((AXIAL, RADIAL))
     flux[0] = band * areas / np.sum(band * areas)
-    row, rest = _coning_row(body, edges, depths, band, beside)
+    row, rest = _coning_row(body, depths, band, beside)
     return Conduction(
         edges,
         depths,
@@ -163,20 +176,31 @@ def conduction(body: RingBody) -> Conduction:
     )
 
 
-def _coning_row(body: RingBody, edges, depths, band, beside) -> tuple[np.ndarray, float]:
+def _coning_row(body: RingBody, depths, band, beside) -> tuple[np.ndarray, float]:
     """Coning (rad) over the temperatures of the cells (AXIAL, RADIAL), and over the heat (W) at once."""
     half, k = np.diff(depths)[0] / 2, body.conductivity
-    middles = np.concatenate([[0.0], (depths[1:] + depths[:-1]) / 2, [body.length]])
-    by_mean, by_gradient = coning_by_temperature(body, middles)
-    mean, gradient = section_weights(body, edges)
-    all_depths = by_mean[:, None] * mean + by_gradient[:, None] * gradient
-    bow, flux = coning_by_bow(body, edges), 1 / np.sum(band * _annulus(edges[:-1], edges[1:]))
+    # The beam knows nothing of the liquid.
+    all_depths, bow, flux = _coning_of_cells(replace(body, convection=1.0))
     row = all_depths[1:-1].copy()
     row[-1] += all_depths[-1]
     # The face is as warm as its cells, cooler where liquid wets it, warmer under the film.
     loss = np.where(beside, 1 / (1 / body.convection + half / k), 0.0)
     row[0] += all_depths[0] * (1 - loss * half / k) - bow * loss
     return row, float(np.sum(band * flux * (all_depths[0] * half / k + bow)))
+
+
+@lru_cache(maxsize=8)
+def _coning_of_cells(body: RingBody) -> tuple[np.ndarray, np.ndarray, float]:
+    """Coning over the temperatures (AXIAL + 2, RADIAL) of face, cells and back (rad/K) and by the local bow over the
+    heat (W/m^2) into the face (RADIAL,); heat flux (W/m^2) of a watt through the band."""
+    edges, depths = _radii(body), _depths(body)
+    middles = np.concatenate([[0.0], (depths[1:] + depths[:-1]) / 2, [body.length]])
+    by_mean, by_gradient = coning_by_temperature(body, middles)
+    mean, gradient = section_weights(body, edges)
+    over = (edges[1:] + edges[:-1]) / 2
+    band = (over > body.face_inner_radius) & (over < body.face_outer_radius)
+    all_depths = by_mean[:, None] * mean + by_gradient[:, None] * gradient
+    return all_depths, coning_by_bow(body, edges), 1 / np.sum(band * _annulus(edges[:-1], edges[1:]))
 
 
 def _reduced(ring: Conduction, time: float):
@@ -215,6 +239,11 @@ def _at_o_ring(body: RingBody, ring: Conduction, steady: np.ndarray) -> float:
     middles = (ring.depths[1:] + ring.depths[:-1]) / 2
     along = steady.reshape(AXIAL, RADIAL)[:, 0 if body.wet == "bore" else -1]
     return float(np.interp(body.wetted_length, middles, along))
+
+
+def _depths(body: RingBody) -> np.ndarray:
+    """Edges (m) of the cells from the face to the back."""
+    return body.length * np.linspace(0.0, 1.0, AXIAL + 1) ** GRADING
 
 
 def _radii(body: RingBody) -> np.ndarray:

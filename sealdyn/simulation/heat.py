@@ -1,7 +1,6 @@
 """What heat does to a seal, in numbers: the warm state of a scene as `run`, `check` and `equilibrium` have it."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 
@@ -57,7 +56,7 @@ def heat_of(scene, state: WarmState | None, friction: float | None = None) -> di
         "cold": {"clearance": cold and cold.clearance, "power": cold and cold.power, "leakage": cold and cold.leakage},
         "interval": _interval(scene),
         "hottest": found.sealed + _hottest(found) * state.rise,
-        "rings": {name: {k: v for k, v in vars(ring).items() if k != "whole"} for name, ring in found.rings.items()},
+        "rings": {name: {k: v for k, v in vars(ring).items() if k != "drawn"} for name, ring in found.rings.items()},
     }
 
 
@@ -68,7 +67,7 @@ def limits_of(found: Warming, high: float) -> dict:
     known: list[tuple[float, WarmState | None]] = [(0.0, found.cold_state)]
 
     def look(speed) -> WarmState | None:
-        there, (_, near) = found.under(replace(found.scene, shaft=replace(found.scene.shaft, speed=speed))), known[-1]
+        there, (_, near) = found.at_speed(speed), known[-1]
         return there.continued(near or there.cold_state)
 
     fold = None

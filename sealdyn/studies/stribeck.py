@@ -91,7 +91,7 @@ def _point(scene, speed: float) -> dict:
     try:
         if scene.film.heat is None:
             return {"unheated": _row(_held(at_work(scene)[0], turned), 0.0)}
-        warm = warming(scene).under(turned)
+        warm = warming(scene).at_speed(speed)
         if (cold := warm.cold_state) is not None:
             found["unheated"] = _row(warm.at(0.0, cold.clearance), 0.0)
         state = warm.working()

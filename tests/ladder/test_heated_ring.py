@@ -15,7 +15,7 @@ from sealdyn.faces.ring_coning import (
     pressure_coning,
     section_weights,
 )
-from sealdyn.faces.ring_heat import RADIAL, conduction, ring_heat
+from sealdyn.faces.ring_heat import RADIAL, conduction, ring_heat, ring_states
 from sealdyn.scene.rings import MATERIALS
 
 CARBON = dict(
@@ -193,21 +193,21 @@ def test_fin_and_finite_volumes(biot, slender, wet):
 def test_six_states_for_the_whole_grid_in_time(name):
     """Face temperature and coning after a step of heat, against all states of the grid, within 3 % of their end."""
     ring = ROWS[name][0]
-    grid, found = conduction(ring), ring_heat(ring)
+    grid, whole, found = conduction(ring), ring_heat(ring), ring_states(ring)
     root = np.sqrt(grid.capacity)
     rates, modes = eigh(dense(grid.matrix) / np.outer(root, root))
     modes /= root[:, None]
-    time = found.time_constant * np.geomspace(1e-4, 50.0, 200)
+    time = whole.time_constant * np.geomspace(1e-4, 50.0, 200)
     step = (1 - np.exp(-np.outer(time, rates))) / rates * (grid.flux @ modes)
     rise = step @ (grid.flux @ modes) + grid.immediate_resistance
     coning = step @ (grid.coning @ modes) + grid.immediate_coning
     share = 1 - np.exp(-time[:, None] / found.time_constants)
     assert np.all(found.time_constants > 0) and len(found.time_constants) == 6
-    assert np.abs(share @ found.resistances + found.immediate_resistance - rise).max() < 0.03 * found.resistance
+    assert np.abs(share @ found.resistances + found.immediate_resistance - rise).max() < 0.03 * whole.resistance
     assert np.abs(share @ found.conings + found.immediate_coning - coning).max() < 0.03 * np.abs(coning).max()
     # What the six and the immediate part add up to is the steady state, and their first moment the time constant.
-    moment = np.sum(found.resistances * found.time_constants) / found.resistance
-    assert moment == pytest.approx(found.time_constant, rel=1e-6)
+    moment = np.sum(found.resistances * found.time_constants) / whole.resistance
+    assert moment == pytest.approx(whole.time_constant, rel=1e-6)
 
 
 @pytest.mark.parametrize("name", ROWS)
@@ -215,10 +215,10 @@ def test_heat_of_six_states_is_that_of_the_whole_grid(name):
     """Heat held and heat lost while the film heats, holds and stops, beside all cells by the midpoint rule.  In the
     states all that enters is held or lost, to rounding."""
     ring = ROWS[name][0]
-    grid, found = conduction(ring), ring_heat(ring)
+    grid, whole, found = conduction(ring), ring_heat(ring), ring_states(ring)
     assert np.sum(found.leaving) == pytest.approx(1.0, rel=1e-9)
     assert found.contents == pytest.approx(found.leaving * found.time_constants, rel=1e-7, abs=1e-9)
-    step, cells, states = 0.02 * found.time_constant, np.zeros(len(grid.flux)), np.zeros(6)
+    step, cells, states = 0.02 * whole.time_constant, np.zeros(len(grid.flux)), np.zeros(6)
     lost, left, entered, differ = 0.0, 0.0, 0.0, []
     for k in range(400):
         heat = np.interp(k + 0.5, [0, 50, 200, 220], [0.0, 100.0, 100.0, 0.0])

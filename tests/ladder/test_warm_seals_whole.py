@@ -13,7 +13,7 @@ import sealdyn
 from sealdyn.dynamics.warm_course import course
 from sealdyn.dynamics.warm_state import Warming, warming
 from sealdyn.faces.ring_coning import RingBody
-from sealdyn.faces.ring_heat import conduction, ring_heat
+from sealdyn.faces.ring_heat import conduction, ring_heat, ring_states
 from sealdyn.simulation.heat import limits_of
 
 CARBON = dict(density=1800.0, modulus=20e9, poisson=0.2, expansion=4.5e-6, conductivity=10.0, specific_heat=750.0)
@@ -167,7 +167,7 @@ def test_a_seal_pressurised_inside_hunts_before_it_folds():
         return seal, one_temperature(seal, *numbers)
 
     def slow(rpm):
-        return slow_root(*state(rpm), rings, 0.39j)
+        return slow_root(*state(rpm), [ring_states(body) for body in INSIDE.rings], 0.39j)
 
     onset = brentq(lambda rpm: slow(rpm).real, 7300.0, 7450.0, xtol=1.0)
     assert onset == pytest.approx(7408.0, rel=0.01)

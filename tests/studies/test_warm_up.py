@@ -7,7 +7,7 @@ from warm_seals import INSIDE, warm_seal
 
 import sealdyn
 from sealdyn.dynamics.model import Model
-from sealdyn.dynamics.warm_state import Warming, warming
+from sealdyn.dynamics.warm_state import Warming, at_work, warming
 from sealdyn.simulation.heat import heat_cautions
 from sealdyn.studies.wear.study import INFO
 
@@ -86,13 +86,17 @@ def test_course_ends_in_the_warm_state_and_cools_to_the_cold_one(pump, rings, tm
     assert found["clearance"][-1] == pytest.approx(found["clearance"][0], rel=1e-2)
 
 
-def test_stribeck_has_the_warm_state_of_each_speed(pump, tmp_path):
+@pytest.mark.parametrize("drawn", [False, True])
+def test_stribeck_has_the_warm_state_of_each_speed(drawn, pump, tmp_path):
+    """Of rings from their drawings with the convection of that speed, too."""
+    pump = sealdyn.example("pump_seal") if drawn else pump
     found = sealdyn.run_study("stribeck", pump, tmp_path / "found.h5", flags={"points": 3})
     for k, speed in enumerate(found["speed"]):
         state = warming(pump.with_(shaft__speed=speed).scene).working()
         assert found["temperature"][k] == pytest.approx(state.rise, rel=1e-6)
         assert found["torque"][k] == pytest.approx(state.torque, rel=1e-6)
         assert found["leakage"][k] == pytest.approx(state.leakage, rel=1e-6)
+        assert at_work(pump.scene, speed)[1].rise == pytest.approx(state.rise, rel=1e-8)
     # Unheated faces keep their clearance; their viscous torque grows with the speed.
     assert np.ptp(found["unheated"]["clearance"]) < 1e-9 * found["unheated"]["clearance"][0]
     assert np.all(np.diff(found["unheated"]["torque"]) > 0.0)
