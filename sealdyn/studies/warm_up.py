@@ -41,12 +41,13 @@ COLUMNS = ("rise", "coning", "clearance", "power", "contact_power", "leakage", "
 
 @dataclass(frozen=True)
 class Settings:
-    """The course of the speed, where `shaft.speed` is no table: start, hold and stop."""
+    """What is added to the tables of the scenario: start and stop of a constant `shaft.speed`, and how long all is
+    held."""
 
-    start: Time = 1.0
-    """From rest to the speed of the scenario."""
-    hold: Time = 60.0
-    """At that speed."""
+    start: Time | None = None
+    """From rest to the speed; without it 1 s, where loads have tables none: it turns at that speed from the start."""
+    hold: Time | None = None
+    """After start and tables; without it 60 s, after tables 0."""
     stop: Time = 0.0
     """To rest again; without it the seal runs on."""
     rest: Time = 0.0
@@ -82,17 +83,23 @@ def run(scenario, settings, tools) -> Answer:
 
 def _course(scene, settings, name):
     """The scene with its speed over time, and the times (s) between which everything is linear."""
-    if not isinstance(scene.shaft.speed, PiecewiseLinear):
-        parts = [settings.start, settings.hold, settings.stop, settings.rest if settings.stop else 0.0]
-        if min(parts) < 0.0 or sum(parts) <= 0.0:
-            raise ScenarioError(name, "study.warm_up.hold", f"{sum(parts):g} s in all", "times >= 0, not all of them 0")
-        ends, speed = np.cumsum(parts), scene.shaft.speed
-        begin = 0.0 if settings.start else speed
-        course = [(0.0, begin), (ends[0], speed), (ends[1], speed)]
-        course += [(ends[2], 0.0), (ends[3], 0.0)] if settings.stop else []
-        course = [point for k, point in enumerate(course) if k == 0 or point[0] > course[k - 1][0]]
-        table = PiecewiseLinear(tuple(t for t, _ in course), tuple(w for _, w in course))
-        scene = replace(scene, shaft=replace(scene.shaft, speed=table))
+    speed, tabled = scene.shaft.speed, breaks(scene)[-1]
+    start = (0.0 if tabled else 1.0) if settings.start is None else settings.start
+    hold = (0.0 if tabled else 60.0) if settings.hold is None else settings.hold
+    rest = settings.rest if settings.stop else 0.0
+    for key, given in (("start", settings.start), ("stop", settings.stop)):
+        if given and isinstance(speed, PiecewiseLinear):
+            raise ScenarioError(name, f"study.warm_up.{key}", f"{given:g} s", "a shaft.speed without table")
+    if min(start, hold, settings.stop, rest) < 0.0 or max(start, tabled) + hold + settings.stop <= 0.0:
+        raise ScenarioError(name, "study.warm_up.hold", f"{hold:g} s", "times >= 0, not all of them 0")
+    held = max(start, tabled) + hold
+    if isinstance(speed, PiecewiseLinear):
+        return scene, sorted({*breaks(scene), held})
+    course = [(0.0, 0.0 if start else speed), (start, speed), (held, speed)]
+    course += [(held + settings.stop, 0.0), (held + settings.stop + rest, 0.0)] if settings.stop else []
+    course = [point for k, point in enumerate(course) if k == 0 or point[0] > course[k - 1][0]]
+    table = PiecewiseLinear(tuple(t for t, _ in course), tuple(w for _, w in course))
+    scene = replace(scene, shaft=replace(scene.shaft, speed=table))
     return scene, breaks(scene)
 
 

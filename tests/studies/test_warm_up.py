@@ -102,6 +102,22 @@ def test_stribeck_has_the_warm_state_of_each_speed(drawn, pump, tmp_path):
     assert np.all(np.diff(found["unheated"]["torque"]) > 0.0)
 
 
+def test_loads_with_tables_are_those_of_the_scenario(pump):
+    """A speed that stays is no start from rest where a pressure changes; what is asked for beside is added."""
+    rising = pump.with_({"film.outer_pressure": {"time": [0.0, 2.0], "value": [5e5, 1.1e6]}})
+    speed = pump.scene.shaft.speed
+    found = sealdyn.study("warm-up", rising).answer
+    assert found["time"][-1] == 2.0 and set(found["speed"]) == {speed}
+    found = sealdyn.study("warm-up", rising, hold=3.0, stop=1.0).answer
+    assert found["time"][-1] == 6.0 and found["speed"][0] == speed and found["speed"][-1] == 0.0
+    turning = pump.with_({"shaft.speed": {"time": [0.0, 2.0], "value": [0.0, speed]}})
+    assert sealdyn.study("warm-up", turning, hold=1.0).answer["time"][-1] == 3.0
+    for given, key in (({"start": 1.0}, "start"), ({"stop": 1.0}, "stop"), ({"hold": -1.0}, "hold")):
+        with pytest.raises(sealdyn.ScenarioError) as error:
+            sealdyn.study("warm-up", turning, **given)
+        assert error.value.key == f"study.warm_up.{key}"
+
+
 def test_warm_up_needs_time_constants(pump, tmp_path):
     bare = {name: {**ring, "time_constant": None} for name, ring in RINGS.items()}
     cold = pump.with_({"film.heat": {name: {k: v for k, v in ring.items() if v} for name, ring in bare.items()}})
@@ -120,3 +136,6 @@ def test_wear_of_warm_faces_says_what_it_holds(pump, tmp_path):
     worn = pump.with_({"contact.stator_wear_coefficient": "1e-15 1/Pa", "rotor.runout": 0, "stator.misalignment": 0})
     found = sealdyn.run_study("wear", worn, tmp_path / "found.h5", flags={"duration": 60.0})
     assert INFO.warm in found["notes"]
+    assert found["history"]["cold_coning"][0] == pytest.approx(5e-5, rel=1e-6)
+    by_heat = np.subtract(found["history"]["coning"], found["history"]["cold_coning"])
+    assert by_heat == pytest.approx(at_work(pump.scene)[1].coned_by, rel=1e-9)

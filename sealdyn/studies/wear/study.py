@@ -30,7 +30,7 @@ HISTORY = {
     "time": "s", "leakage": "m^3/s", "friction_power": "W", "contact_share": "1", "contact_force": "N",
     "closing_force": "N", "film_force": "N", "contact_area_fraction": "1", "contact_pressure": "Pa", "h_min": "m",
     "mean_clearance": "m", "coning": "rad", "wear_rate": "m/s", "stator_volume": "m^3", "rotor_volume": "m^3",
-    "unevenness": "1", "travel": "m", "relative_misalignment": "rad", "periods": "1",
+    "cold_coning": "rad", "unevenness": "1", "travel": "m", "relative_misalignment": "rad", "periods": "1",
 }  # fmt: skip
 INFO = Info(
     timed=("run_in", 7),
@@ -77,11 +77,11 @@ def run(scenario, settings, tools) -> Answer:
     hats, rough = HatBasis(radius), scenario.scene.contact.roughness
     # What the averages may be wrong by: a tenth of what a step may, on the depth of about a roughness.
     # Worn at the temperature of the unworn faces.
-    scene = at_work(scenario.scene)[0]
+    scene, warm = at_work(scenario.scene)
     runs = ShortRunAverages(scene, radius, scenario.run.accuracy, 0.1 * settings.accuracy, settings.turns,
                     settings.patience)  # fmt: skip
     rows, end = _history(runs, hats, Control(rough, settings.accuracy, settings.step * rough), settings, tools)
-    numbers = _numbers(runs, hats, wears, rows) | {"end": end}
+    numbers = _numbers(runs, hats, wears, rows, warm.coned_by if warm is not None else 0.0) | {"end": end}
     if end["kind"] == "run-in" and settings.run_in == "extrapolate":
         numbers["extrapolated"] = _extrapolated(numbers, rows[-1], hats, wears, settings.duration)
     numbers["status"] = end["kind"] if end["kind"] in (Status.COLLAPSED, Status.FAILED) else Status.OK
@@ -182,8 +182,8 @@ def _ended(rows, settings, control) -> dict | None:
 # --- the answer -------------------------------------------------------------------------------------------
 
 
-def _numbers(runs, hats, wears, rows) -> dict:
-    """Histories, profiles and the balance of volume, JSON-ready."""
+def _numbers(runs, hats, wears, rows, coned_by) -> dict:
+    """Histories, profiles and the balance of volume, JSON-ready; `coned_by`: coning by heat (rad) of the faces."""
     rows = [row for row in rows if row["seen"]]
     both = sum(wears.values())
     depth = np.array([row["depth"] for row in rows]).reshape(-1, len(hats.radius))
@@ -198,6 +198,7 @@ def _numbers(runs, hats, wears, rows) -> dict:
         for row, g in zip(rows, gap, strict=True)
     ]
     history["coning"] = [_slope(hats, g) for g in gap]
+    history["cold_coning"] = [cone - coned_by for cone in history["coning"]]
     history["unevenness"] = [float(u) if np.isfinite(u) else None for u in (unevenness(row["rate"]) for row in rows)]
     for face in wears:
         history[f"{face}_volume"] = [hats.volume(d) for d in worn[face]]
@@ -304,6 +305,8 @@ def _tables(numbers, settings) -> list[Table]:
         "coning": ("tilt", "coning of the gap"),
         "h_min": ("h_min", "thinnest film"),
     }
+    if history["cold_coning"] != history["coning"]:
+        names["cold_coning"] = ("tilt", "coning when cold")
     rows = zip(*(history[name] for name in names), strict=True)
     return [*found, Table("history", list(names.values()), [list(row) for row in rows])]
 
