@@ -151,7 +151,7 @@ def _stretch(cvode, runs, i, stretch, thinnest, touching, output, told):
     windows = runs.windows[i] - real[START]
     most = BLOCK + 2 * OVERLAP + 1
     t, ys, reached = np.empty(most), np.empty((most, size)), np.zeros(1)
-    q, q_rate, reach = np.empty((most, n)), np.empty((most, n)), np.empty(most)
+    q, q_rate, reach = np.empty((most, n)), np.empty((most, n)), np.empty((most, 2))
     scratch, rates = np.zeros(size), np.zeros(size)
     t[0], ys[0] = 0.0, cvode.y
     count, watched, begun = 1, 0, runs.counts[i, 0]

@@ -101,7 +101,7 @@ def locate_contacts(t, q_all, q_rate_all, impulse, count, begin, end, reach, p, 
     ended.
 
     `t` (count,), `q_all`, `q_rate_all` (count, n) the accepted steps, `impulse` (count,) the impulse so far (N s),
-    `reach` (count,) what no film of a step is thinner than (m); `p`, `w`, `s` as in dynamics/equations.py, `thinnest`
+    `reach` (count, 2) bounds of the thinnest film (m) of a step; `p`, `w`, `s` as in dynamics/equations.py, `thinnest`
     as in extrema.py, `f` the film's block, `y`, `yp` (size,) scratch; `error` of the gap (m); `pace` the fastest
     imposed motion (rad/s); `state` (STATE,) is carried from call to call.
     """
@@ -116,7 +116,9 @@ def locate_contacts(t, q_all, q_rate_all, impulse, count, begin, end, reach, p, 
         scan = min(max(SCAN, int(PER_RADIAN * pace * (high - low))), MOST_SCAN)
         if high <= low:
             continue
-        if state[OPEN] == 0.0 and reach[k] > level + error:
+        # No touch; or no lift-off, and nowhere deeper than before.
+        apart = state[OPEN] == 0.0 and reach[k, 0] > level + error
+        if apart or (state[OPEN] != 0.0 and reach[k, 1] < level and reach[k, 0] >= state[DEPTH_H]):
             state[SINKING] = 0.0
             continue
         scan_step(t, q_all, q_rate_all, k, low, high, y, yp, p, thinnest, f, w, s, q, out, seen, scan, 0, scan)

@@ -26,6 +26,7 @@ from .step_bounds import (
     TILT,
     add_imposed,
     bound_measures,
+    chord_length,
     floating_motion,
     imposed_gap,
     lowest_possible,
@@ -226,21 +227,21 @@ def track_extremes(
     `t` (count,), `q_all`, `q_rate_all` (count, n) the accepted steps; `swing` (SWING,) of step_bounds.py; `windows`
     (WINDOWS, 2) in segment time; unless extremes are `asked` for, only collapse is looked for; `level` (m) above which
     a film tells nothing but extremes; `tolerance` (2,) improvements of film thickness (m) and tilt (rad) that are not
-    worth locating; `pace` the fastest imposed motion (rad/s), `fastest` of any motion of interest.  `reach` (count,)
-    is filled: no film in the step is thinner than that (m).
+    worth locating; `pace` the fastest imposed motion (rad/s), `fastest` of any motion of interest.  `reach` (count, 2)
+    is filled: no film in the step is thinner than the first (m), its thinnest film nowhere thicker than the second.
     """
     n = q_all.shape[1]
     table, nodes = np.zeros((n, 2 * NODES)), np.zeros(2 * NODES)
     q, q_rate, out, seen = np.zeros(n), np.zeros(n), np.zeros(3), np.zeros((MOST_SCAN + 1, 3))
     motion, imposed, ends = np.zeros((4, 3)), np.zeros((2, 6)), np.zeros((2, 3))
-    films, lower, wavy = np.zeros(2), np.zeros(3), f[WAVES] != 0.0
+    films, cones, lower, wavy = np.zeros(2), np.zeros(2), np.zeros(3), f[WAVES] != 0.0
     # A step begins where the one before ended: of which steps the imposed motion and the measures are known there.
     placed = seen_end = -1
     for k in range(begin, end):
         floating_motion(t, q_all, q_rate_all, k, p, motion)
         if not asked:
-            reach[k] = lowest_possible(f, swing, motion)
-            if reach[k] > level:
+            reach[k, 0], reach[k, 1] = lowest_possible(f, swing, motion), np.inf
+            if reach[k, 0] > level:
                 continue
         size, span = 0, t[k + 1] - t[k]
         for j in range(3):
@@ -255,12 +256,16 @@ def track_extremes(
                 gap_and_tilt(t[k + at], q_all[k + at], y, yp, p, thinnest, f, w, s, ends[at])
             films[0], films[1] = ends[0, THICKNESS], ends[1, THICKNESS]
             begins, ended, seen_end = True, True, k + 1
+            farther = np.inf
         else:
             for at in range(2):
-                change, _ = coning_at(t[k + at], p[LEG_AT:])
-                films[at], _ = smallest_gap(f, motion[FROM + at, 0], tilt_at(motion, FROM + at), change)
+                cones[at], _ = coning_at(t[k + at], p[LEG_AT:])
+                films[at], _ = smallest_gap(f, motion[FROM + at, 0], tilt_at(motion, FROM + at), cones[at])
+            farther = chord_length(f, motion, cones)
         bound_measures(f, swing, span, pace * t[k + 1], motion, films, lower)
-        reach[k] = lower[THICKNESS]
+        reach[k, 0] = lower[THICKNESS]
+        # From either end the thinnest film grows no faster than its place moves along the chord.
+        reach[k, 1] = 0.5 * (films[0] + films[1] + farther) + min(films[0], films[1]) - lower[THICKNESS]
         for window in range(WINDOWS if asked else 1):
             low, high = max(t[k], windows[window, 0]), min(t[k + 1], windows[window, 1])
             if high <= low:
@@ -287,7 +292,7 @@ def track_extremes(
                 least, most = np.inf, -np.inf
                 for i in range(scan + 1):
                     least, most = min(least, seen[i, THICKNESS]), max(most, seen[i, THICKNESS])
-                reach[k] = least - (most - least)
+                reach[k, 0] = least - (most - least)
             for kind in range(3 if asked else 1):
                 for best in range(scan + 1):
                     # Every dip of the scan, however many a long step holds.
@@ -346,7 +351,7 @@ def watched_level(model) -> float:
 class ExtremaTracker:
     """An observer of the gap: `records` (WINDOWS, RECORD) of extremes in the `windows` [[from, to], ...] (s): the whole
     run of `duration` (s), its last forcing period and the one before; `seen`, those of the samples that are kept.
-    `reach` (m,) bounds the film of each step last seen from below (m).
+    `reach` (m, 2) bounds the thinnest film of each step last seen from below and above (m).
 
     A film that reaches its floor ends the run, with a sentence that knows whether it began on the steady response
     (`steady`).
@@ -368,7 +373,7 @@ class ExtremaTracker:
         thinnest = thinnest_value(model.face)
         windows = np.array(self.windows) - segment.time
         q, q_rate = block.motion
-        self.reach = np.empty(len(block.t))
+        self.reach = np.empty((len(block.t), 2))
         fallen = track_extremes(
             block.t, q, q_rate, len(block.t), block.begin, block.end, segment.p, thinnest, model.f,
             np.zeros(segment.size), np.zeros(segment.size), segment.w, segment.s, segment.swing, windows,

@@ -168,6 +168,15 @@ def tilt_at(motion, end):
 
 
 @inner_kernel()
+def chord_length(f, motion, cones):
+    """How far (m) a place of the faces may move along the chord of a `motion` and of the coning changes `cones` (2,)
+    (rad) at the step's ends."""
+    x, y = motion[TO, 1] - motion[FROM, 1], motion[TO, 2] - motion[FROM, 2]
+    turned = f[OUTER_RADIUS] * math.sqrt(x * x + y * y) + (f[OUTER_RADIUS] - f[INNER_RADIUS]) * abs(cones[1] - cones[0])
+    return abs(motion[TO, 0] - motion[FROM, 0]) + turned
+
+
+@inner_kernel()
 def lowest_possible(f, swing, motion):
     """What no film of a step is thinner than (m), wherever the imposed motion may stand; `motion` of the rings that
     float alone."""

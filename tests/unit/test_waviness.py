@@ -350,7 +350,7 @@ def test_touches_of_waves_between_steps():
     scratch = np.zeros(segment.size), np.zeros(segment.size), segment.w, segment.s
     scratch = segment.p, thinnest_value(f), f, *scratch
     rows, state = np.zeros((500, ROW)), np.zeros(STATE)
-    steps = t, q, q, np.zeros(count), count, 0, count - 1, np.full(count, -np.inf)
+    steps = t, q, q, np.zeros(count), count, 0, count - 1, np.tile([-np.inf, np.inf], (count, 1))
     found = locate_contacts(*steps, *scratch, 0.0, segment.pace, 1e-8 * CLEARANCE, state, rows)
     rows, times = rows[:found], np.linspace(0, TURN, 8001)
     low, _ = lowest_at(*waves, times)
