@@ -86,6 +86,21 @@ def test_course_ends_in_the_warm_state_and_cools_to_the_cold_one(pump, rings, tm
     assert found["clearance"][-1] == pytest.approx(found["clearance"][0], rel=1e-2)
 
 
+@pytest.mark.slow
+def test_a_slow_start_from_rest_in_time_goes_along_the_stribeck_curve(pump, tmp_path):
+    """Torque and leakage of a run of 100 s; rings of 1.2 s lag behind by a twentieth at the lowest speed here."""
+    course = {"shaft.speed": {"time": [0.0, 100.0], "value": [0.0, 308.9]}, "run.duration": 100.0}
+    plain = {"run.accuracy": 1e-4, "run.samples_per_turn": 1, "rotor.runout": 1e-9, "stator.misalignment": 0}
+    starting = pump.with_({**course, **plain})
+    run = sealdyn.simulate(starting, tmp_path / "run.h5")
+    found = sealdyn.study("stribeck", starting, speed_from=60.0, points=5).answer
+    when = np.array(found["speed"]) / 308.9 * 100.0
+    assert run.status == "ok" and found["leakage"][-1] > 1.5 * found["leakage"][0]
+    for key, name, within in (("torque", "friction_torque", 0.01), ("leakage", "leakage_inner", 0.05)):
+        passed = np.interp(when, run.data.time.values, np.abs(run.data[name].values))
+        assert passed == pytest.approx(np.abs(found[key]), rel=within), key
+
+
 @pytest.mark.parametrize("drawn", [False, True])
 def test_stribeck_has_the_warm_state_of_each_speed(drawn, pump, tmp_path):
     """Of rings from their drawings with the convection of that speed, too."""
