@@ -35,7 +35,7 @@ from .result import (
     without_equal_choices,
 )
 from .selection import prepare_run, starts_of
-from .simulate import in_memory
+from .simulate import in_memory, own_friction
 from .summary import state_names
 
 if TYPE_CHECKING:
@@ -244,7 +244,7 @@ def _rows_in_loop(scenario, points) -> list:
     for some in alike.values():
         integrate([run for _, run in some])
         for k, run in some:
-            if run.outcome:
+            if run.outcome and own_friction(run.run, run.outcome, run.tally) is None:
                 row = _row_or_error(_row, run.parts(), points[k])
                 # What is tallied after all, or is not there, is a matter for the whole summary.
                 rows[k] = None if isinstance(row, NotTallied) else row
@@ -294,6 +294,8 @@ class LoopedRun:
         self.tolerance = tolerance_for(self.method, run.model.accuracy, run.memory)
         self.structure = None
         self.tallied, self.watched = (any(key.startswith(asked) for key in outputs) for asked in (TALLIED, EXTREMES))
+        # Whether a warm seal rubs as its state counts is a matter of means.
+        self.tallied = self.tallied or run.model.heat is not None
         self.segments = [run.segment(index) for index in range(len(run.intervals))]
         alone = run.stick_slip or any(key.startswith(OWN) for key in outputs) or not looped(self.segments[0])
         self.room = LEAST_ROOM + int(ROOM * run.duration / run.model.shortest_period) if self.tallied else 0

@@ -141,10 +141,10 @@ def _simulate(scenario, out, progress, stop, resume, allow_large) -> tuple[Resul
         writer.events(_events(run, outcome))
     path = writer.finish(str(outcome.status), outcome.message, json.loads(json.dumps(summary)))
     summary["archive"] = str(path)
-    return Result(str(outcome.status), outcome.message, summary, path), _own_friction(run, outcome, sink.tally)
+    return Result(str(outcome.status), outcome.message, summary, path), own_friction(run, outcome, sink.tally)
 
 
-def _own_friction(run, outcome, tally) -> float | None:
+def own_friction(run, outcome, tally) -> float | None:
     """The factor of the aligned film's friction that is a run's; None where the warm state counts that, or the run did
     not end, or takes no heat."""
     if tally is None or run.model.heat is None or outcome.status not in (Status.OK, Status.INACCURATE):
@@ -182,7 +182,7 @@ def in_memory(scenario, speeds: bool = False, lowest: bool = True, again: bool =
     trial, errors = first_steps(run, plan)
     outcome = solve(run, plan.method, run.model.accuracy, sink, errors=errors, tally=tally, **_solve_options(trial))
     run.contacts.tell(sink.log, end=(run.end_time(outcome.segment, outcome.tau), outcome.y))
-    if not again and (friction := _own_friction(run, outcome, tally)) is not None:
+    if not again and (friction := own_friction(run, outcome, tally)) is not None:
         return in_memory(with_values(scenario, {FRICTION: friction}), speeds, lowest, again=True)
     return parts(scenario, run, _completed_plan(plan, trial, outcome), outcome, tally, speeds)
 

@@ -241,3 +241,6 @@ def test_a_run_that_rubs_more_than_the_aligned_film_is_done_again_with_its_frict
     assert done.status == whole.status
     assert done.summary["heat"]["friction"] == whole.summary["heat"]["friction"]
     assert done.summary["h_min"] == whole.summary["h_min"]
+    # So is one of many, whose friction nobody asks for.
+    many = sealdyn.simulate_many(seal, [{}], ["h_min.value"], workers=1)
+    assert many["h_min.value"].item() == pytest.approx(whole.summary["h_min"]["value"], rel=1e-5)
