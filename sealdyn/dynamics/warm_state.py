@@ -45,7 +45,7 @@ from ..scene.scene import Closing, SceneError
 from ..status import Status
 from .equilibrium import closing_law, crossing, equilibria
 from .heated_rings import ThermalStates, heated_body
-from .interface import Asked, Interface, flow_at_rest, opening_law, rest_state
+from .interface import Asked, Interface, film_of, flow_at_rest, opening_law, prepared, rest_state
 
 # Rises that are looked at between the first, as a share of the last, and the end of the liquid's table.
 SCANNED, FIRST = 60, 1e-4
@@ -100,7 +100,8 @@ class Warming:
     def __init__(self, scene, cooling: float = 1.0):
         cold = unheated(scene)
         self.law, self.said = closing_law(cold, opening_law(cold))
-        self.cooling = cooling
+        # Cells that are looked for are those of the unheated seal.
+        self.cells, self.cooling = prepared(cold, film_of(cold)).reynolds, cooling
         self._cool(scene)
         self._begin(scene)
 
@@ -140,7 +141,7 @@ class Warming:
     def at(self, rise: float, clearance: float | None = None, coned_by: float | None = None):
         """The scene, without heat, with faces and liquid `rise` (K) above the sealed one, and a clearance (m) if given;
         its closing force is the same.  `coned_by`: coning by heat (rad), where it is not that of the steady rings."""
-        film = in_numbers(replace(self.scene.film, heat=None), rise)
+        film = in_numbers(replace(self.scene.film, heat=None, reynolds=self.cells), rise)
         change = self.coning_per_kelvin * rise if coned_by is None else coned_by
         film = replace(film, coning=_more(film.coning, change), clearance=clearance)
         closing = Closing(self.law.balance_ratio, self.spring) if clearance is not None else Closing()

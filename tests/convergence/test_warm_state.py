@@ -200,6 +200,19 @@ def test_a_run_is_that_with_the_warm_numbers_put_in(changes):
     assert "heat" not in other or other["heat"] is None
 
 
+def test_cells_that_are_looked_for_serve_a_warm_seal_too():
+    """Of plain faces they give the radial film; no clearance is given, so that cells are sought where it rides."""
+    plain = {
+        "film.model": "reynolds",
+        "film.reynolds": {"cavitation": "none", "roughness": "none", "grid_accuracy": 1e-3},
+        "rotor.runout": 0,
+        "stator.misalignment": 0,
+    }
+    cells, whole = (at_work(sealdyn.example("pump_seal").with_(changes).scene)[1] for changes in (plain, {}))
+    for name in ("rise", "clearance", "leakage"):
+        assert getattr(cells, name) == pytest.approx(getattr(whole, name), rel=0.01), name
+
+
 def test_what_is_told_adds_up():
     """Shares are all of the heat; the film's friction, which a run measures, is the heat that the state made."""
     found = sealdyn.run(warm_seal().with_({"run.turns": 1})).summary
