@@ -173,6 +173,7 @@ def test_a_seal_pressurised_inside_hunts_before_it_folds():
     assert onset == pytest.approx(7408.0, rel=0.01)
     assert 2 * np.pi / slow(onset).imag == pytest.approx(16.0, rel=0.05)
     assert slow(7300.0) == pytest.approx(-0.107 + 0.324j, abs=0.03)
+    assert slow(7440.0) == pytest.approx(0.059 + 0.412j, abs=0.03)
     # There is a warm state up to the fold.
     assert state(0.995 * 7935)[1] is not None and state(1.01 * 7935)[1] is None
 

@@ -22,6 +22,24 @@ START = (
     (2.0, 7.8626, 1.4587e-4, 1.8419e-7, 193.87),
     (5.0, 8.0856, 1.4859e-4, 1.8413e-7, 191.16),
 )
+# By all cells of both rings, of a program of finite volumes: time (s), rise (K), coning (rad), heat (W).
+DRAWN = {
+    "film.heat": {"stator": {"convection": 13590.0, "wetted_length": 0.012}, "rotor": {"convection": 21572.0}},
+    "stator.body": {
+        "inner_radius": 0.029, "outer_radius": 0.036, "length": 0.02, "conductivity": 10.0, "modulus": 2e10,
+        "poisson": 0.2, "expansion": 4.5e-6, "density": 1800.0, "specific_heat": 750.0,
+    },
+    "rotor.body": {
+        "inner_radius": 0.029, "outer_radius": 0.038, "length": 0.01, "conductivity": 125.0, "modulus": 4.1e11,
+        "poisson": 0.16, "expansion": 4e-6, "density": 3100.0, "specific_heat": 670.0,
+    },
+}  # fmt: skip
+START_DRAWN = (
+    (0.5, 2.45, 7.22e-5, 112.4),
+    (1.0, 6.17, 1.128e-4, 230.1),
+    (2.0, 7.65, 1.379e-4, 201.3),
+    (5.0, 7.99, 1.506e-4, 189.7),
+)
 
 
 @pytest.fixture
@@ -39,6 +57,17 @@ def test_start_of_the_pump_is_that_of_an_independent_program(pump, monkeypatch, 
         here = [float(CubicSpline(found["time"], found[key])(time)) for key in ("rise", "coning", "clearance", "power")]
         assert here == pytest.approx(row, rel=1e-3), time
     assert found["energy_residual"] < 1e-9
+
+
+def test_so_is_that_of_rings_from_their_drawings(monkeypatch, tmp_path):
+    """Six states a ring beside all cells of both."""
+    squeezed = Warming.damping
+    monkeypatch.setattr(Warming, "damping", lambda self, *at: 1e-2 * squeezed(self, *at))
+    seal = sealdyn.example("pump_seal").with_(DRAWN)
+    found = sealdyn.run_study("warm-up", seal, tmp_path / "found.h5", flags={"start": 1.0, "hold": 4.0})
+    for time, *row in START_DRAWN:
+        here = [float(CubicSpline(found["time"], found[key])(time)) for key in ("rise", "coning", "power")]
+        assert here == pytest.approx(row, rel=0.012), time
 
 
 @pytest.mark.parametrize("drawn", [False, True])
