@@ -76,7 +76,7 @@ class Interface:
 
     def _borrowed(self):
         """The film whose numbers the scene's film has."""
-        return _lender(self.scene, self.film)
+        return lender(self.scene, self.film)
 
     def _table(self):
         """The film's table; a linear film that borrows another film's coefficients gets them here."""
@@ -260,7 +260,7 @@ def _clear(film, inner_pressure, outer_pressure) -> bool:
     return above and (floor is None or not film.inertia)
 
 
-def _lender(scene, film):
+def lender(scene, film):
     """The film whose numbers a scene's `film` has: its own, or the radial film's in a linear film that says so."""
     borrows = film.opening_slots is not None and scene.film.coefficients == "radial"
     return film_named("radial", scene.film, scene.contact is not None) if borrows else film
@@ -281,7 +281,7 @@ def opening_parts(scene, film=None):
     """Function `forces(clearance, p_i, p_o)` (N, N): opening force of the film, with the floor of rough faces, and of
     the asperities that touch, of a scene's aligned faces at rest; clearance in m, pressures in Pa.  The scene names its
     film, unless a `film` is given."""
-    film = _lender(scene, film_of(scene, film))
+    film = lender(scene, film_of(scene, film))
     table, surfaces = coned(replace(scene, film=prepared(scene, film))), {}
     if waves_of(scene) and film.standing_waves:
         surfaces["waves"] = scene.stator.waviness, scene.rotor.waviness

@@ -200,6 +200,8 @@ def _along(whirl, x, w, by_x, by_w):
 STILL = 1e-9
 # How near, as a share, a known neutral speed is looked at from both sides.
 BESIDE = 1e-6
+# Speeds that are looked at, in the logarithm to 10, and by how much of a step they are beside round ones.
+PER_DECADE, UNEVEN = 30, 0.37
 # Halvings of a step of the speed over which a mode begins or ceases to go forward: it may hide a resonance of another.
 HALVINGS = 8
 
@@ -233,12 +235,23 @@ def all_at_once(whirl: Whirl):
     return lambda speeds: roots(*whirl.at(np.asarray(speeds, dtype=float)))
 
 
-def thresholds(values, low: float, high: float, points: int, neutral=()) -> list[float]:
+def spread(low: float, high: float, points: int | None = None) -> np.ndarray:
+    """Speeds from `low` to `high` (rad/s) in even ratios: so many `points`, or both ends and those of PER_DECADE to the
+    decade between, which all ranges share: of a scene whose every speed is a search of its own none is made twice."""
+    if points is not None:
+        return np.geomspace(low, high, points)
+    # None is round, as speeds that are sought may be.
+    first, last = PER_DECADE * np.log10([low, high]) - UNEVEN
+    between = np.arange(np.floor(first) + 1, np.ceil(last)) + UNEVEN
+    return np.array([low, *10.0 ** (between / PER_DECADE), high])
+
+
+def thresholds(values, low: float, high: float, points: int | None = None, neutral=()) -> list[float]:
     """Shaft speeds (rad/s), rising, at which the largest growth rate of the tilt modes changes its sign: in [low, high]
-    those that so many `points` tell apart, and any of the speeds `neutral` at which some mode is known to be neutral.
-    A growth rate whose bound contains zero has no sign."""
+    those that the speeds of `spread` tell apart, and any of the speeds `neutral` at which some mode is known to be
+    neutral.  A growth rate whose bound contains zero has no sign."""
     neutral = np.asarray(neutral, dtype=float)
-    speeds = np.concatenate([np.geomspace(low, high, points), neutral * (1.0 - BESIDE), neutral * (1.0 + BESIDE)])
+    speeds = np.concatenate([spread(low, high, points), neutral * (1.0 - BESIDE), neutral * (1.0 + BESIDE)])
     speeds = np.unique(speeds)
     signs = _signs(*values(speeds))
     found = []
@@ -251,7 +264,7 @@ def thresholds(values, low: float, high: float, points: int, neutral=()) -> list
     return found
 
 
-def critical_speed(values, low: float, high: float, points: int = 160) -> float | None:
+def critical_speed(values, low: float, high: float, points: int | None = None) -> float | None:
     """Lowest of the `thresholds` in [low, high] (rad/s); None without one."""
     return min(thresholds(values, low, high, points), default=None)
 
@@ -268,7 +281,7 @@ def _largest(rows) -> np.ndarray:
     return np.max(np.where(np.isnan(rows), -np.inf, rows), axis=1, initial=-np.inf)
 
 
-def resonance_speeds(values, low: float, high: float, points: int = 120, whirl: Whirl | None = None) -> list[float]:
+def resonance_speeds(values, low: float, high: float, whirl: Whirl | None = None) -> list[float]:
     """Shaft speeds (rad/s) where a tilt mode's frequency equals the shaft speed (once per turn); `whirl` of a scene
     whose matrices are linear in the speed, for which Newton's method mends what the points have bracketed."""
 
@@ -284,7 +297,7 @@ def resonance_speeds(values, low: float, high: float, points: int = 120, whirl: 
         (each,), _ = distances([speed])
         return each[mode] if mode < len(each) else np.nan
 
-    speeds = np.geomspace(low, high, points)
+    speeds = spread(low, high)
     each, rates = distances(speeds)
     for _ in range(HALVINGS):
         at = 1 + np.flatnonzero(np.diff(np.sum(np.isfinite(each), axis=1)))

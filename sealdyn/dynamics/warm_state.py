@@ -37,7 +37,7 @@ from ..faces.geometry import (
     SPIN_DIFFERENCE,
     TORQUE,
 )
-from ..numerics.piecewise_linear import PiecewiseLinear, initially
+from ..numerics.piecewise_linear import initially, shifted
 from ..scene.contact import waves_of
 from ..scene.film import coned
 from ..scene.liquid import in_numbers, liquid_of
@@ -45,7 +45,7 @@ from ..scene.scene import Closing, SceneError
 from ..status import Status
 from .equilibrium import closing_law, crossing, equilibria
 from .heated_rings import ThermalStates, heated_body
-from .interface import Asked, Interface, film_of, flow_at_rest, opening_law, prepared, rest_state
+from .interface import Asked, Interface, film_of, flow_at_rest, lender, opening_law, prepared, rest_state
 
 # Rises that are looked at between the first, as a share of the last, and the end of the liquid's table.
 SCANNED, FIRST = 60, 1e-4
@@ -57,6 +57,9 @@ TINY = 1e-9
 HALVINGS = 30
 # From rise to rise in looking for the balance of a speed nearby: first, and at most: near a fold two states are close.
 WIDER, WIDEST = 1.05, 1.2
+# Secants at most from a state nearby, the share of it that they may go, the last of them, and the share of the slope by
+# which the surplus falls at least: it stands still at a fold.
+SECANTS, NEARBY, SETTLED, DOUBTFUL = 8, 0.5, 1e-7, 0.05
 # From clearance to clearance in following one, and how far it is followed from rise to rise.
 STRIDE, REACH = 1.03, 60
 
@@ -143,7 +146,7 @@ class Warming:
         its closing force is the same.  `coned_by`: coning by heat (rad), where it is not that of the steady rings."""
         film = in_numbers(replace(self.scene.film, heat=None, reynolds=self.cells), rise)
         change = self.coning_per_kelvin * rise if coned_by is None else coned_by
-        film = replace(film, coning=_more(film.coning, change), clearance=clearance)
+        film = replace(film, coning=shifted(film.coning, change), clearance=clearance)
         closing = Closing(self.law.balance_ratio, self.spring) if clearance is not None else Closing()
         return replace(self.scene, film=film, closing=closing)
 
@@ -176,7 +179,7 @@ class Warming:
         """Heat made and carried at a rise (K) and a clearance (m), whether or not they balance; `coned_by` as in
         `at`."""
         scene = self.at(rise, clearance, coned_by)
-        film, interface = scene.film, Interface(_whole(scene), FINE)
+        film, interface = scene.film, Interface(scene, FINE, lender(scene, film_of(scene)))
         s, _ = rest_state(scene, clearance)
         flow_at_rest(interface, s)
         opening = float(s[FORCE] + (s[CONTACT_FORCE] if interface.contact is not None else 0.0))
@@ -332,6 +335,8 @@ class Warming:
 
     def _beside(self, near: WarmState) -> WarmState | None:
         """The balance that continues one `near`, where the surplus falls; None if there is none."""
+        if (found := self._by_secants(near)) is not None:
+            return found
         low = high = self._held(near.rise, near.clearance)
         if low is None:
             # No film so warm: from the cold on.
@@ -346,6 +351,22 @@ class Warming:
                 rise = max(high.rise * wider, high.rise + FIRST * self.highest)
                 low, (high, ended) = high, self._warmer(high, min(rise, self.highest), ended)
             wider = min(wider**2, WIDEST)
+        return None
+
+    def _by_secants(self, near: WarmState) -> WarmState | None:
+        """The same, where a few secants end in it; None in any doubt."""
+        rise, clearance, before = near.rise, near.clearance, None
+        for _ in range(SECANTS):
+            if (state := self._held(rise, clearance)) is None:
+                return None
+            left, surplus = self.conductance + state.carried, self.surplus(state)
+            slope = -left if before is None else (surplus - before[1]) / (rise - before[0])
+            step = -surplus / slope if slope < -DOUBTFUL * left else math.inf
+            if abs(step) > NEARBY * rise:
+                return None
+            if abs(step) <= SETTLED * rise:
+                return self._held(rise + step, state.clearance)
+            before, clearance, rise = (rise, surplus), state.clearance, rise + step
         return None
 
     def _warmer(self, state: WarmState, rise: float, ended: float) -> tuple[WarmState | None, float]:
@@ -384,22 +405,9 @@ def _slope(values, steps) -> float:
     return float((values[0] - 8.0 * values[1] + 8.0 * values[2] - values[3]) / (6.0 * (steps[3] - steps[2]) * 2.0))
 
 
-def _more(quantity, change: float):
-    """A number or function of time with a change."""
-    if isinstance(quantity, PiecewiseLinear):
-        return PiecewiseLinear(quantity.time, tuple(value + change for value in quantity.value))
-    return quantity + change
-
-
 def unheated(scene):
     """The scene with faces that take no heat and the numbers of its liquid."""
     return replace(scene, film=in_numbers(replace(scene.film, heat=None)))
-
-
-def _whole(scene):
-    """The scene with the film whose coefficients a linear one borrows: that one's leakage and friction are observed."""
-    borrows = scene.film.model == "linear" and scene.film.coefficients == "radial"
-    return replace(scene, film=replace(scene.film, model="radial")) if borrows else scene
 
 
 @lru_cache(maxsize=64)

@@ -43,6 +43,13 @@ def points(quantity) -> tuple[float, ...]:
     return quantity.value if isinstance(quantity, PiecewiseLinear) else (quantity,)
 
 
+def shifted(quantity, change: float):
+    """A number or function of time with a `change`."""
+    if isinstance(quantity, PiecewiseLinear):
+        return PiecewiseLinear(quantity.time, tuple(value + change for value in quantity.value))
+    return quantity + change
+
+
 def crossing(function, a: float, b: float, relative: float, most: int = 100) -> float:
     """Where a continuous function changes sign between a and b, to `relative` of the place; NaN where it meets a value
     that is not finite.

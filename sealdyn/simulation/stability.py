@@ -15,10 +15,10 @@ from ..scene.scene import SceneError
 # Speed (m/s) of the outer edge of a face beyond which there is none: rings burst at some hundreds.
 FASTEST = 1000.0
 # How far below the least and above the largest of the shaft's speed and the natural frequency thresholds are looked
-# for, and by how many speeds, where they are not known beforehand; and where they are, to see that none was missed.
-AROUND, POINTS, POINTS_KNOWN = 1e3, 160, 32
-# Steps of the way to the last speed at which a film holds the closing force, and halvings of the last of them.
-STEPS, HALVINGS = 40, 20
+# for; and by how many speeds, where they are known beforehand, to see that none was missed.
+AROUND, POINTS_KNOWN = 1e3, 32
+# Halvings of the last step of the way to the last speed at which a film holds the closing force.
+HALVINGS = 20
 
 
 def found_alone(failed: list[str], name: str, find):
@@ -100,13 +100,14 @@ def thresholds(model, interval=None) -> list[float]:
     model lose or regain their damping, the rest as at an interval's start (default: the run's).
 
     **Valid** every speed, where the film's matrices are linear in it (dynamics/stability_thresholds.py); of a film with
-    a floor of the pressure, unknowns of its own or waves those that 160 speeds tell apart, from a thousandth of the
-    smaller of the shaft's speed and `natural_frequency` to a thousand times the larger, within `held_speeds`."""
+    a floor of the pressure, unknowns of its own, heat or waves those that 30 speeds a decade tell apart, from a
+    thousandth of the smaller of the shaft's speed and `natural_frequency` to a thousand times the larger, within
+    `held_speeds`."""
     low, high = _range(model, interval)
     if not high:
         return []
     values, whirl = whirl_over_speed(model, interval)
-    neutral, points = ((), POINTS) if whirl is None else (neutral_speeds(whirl), POINTS_KNOWN)
+    neutral, points = ((), None) if whirl is None else (neutral_speeds(whirl), POINTS_KNOWN)
     low, high = held_speeds(model, interval, low / AROUND, high * AROUND)
     return stability_thresholds.thresholds(values, low, high, points, neutral)
 
@@ -124,7 +125,9 @@ def resonance_speeds(model, interval=None) -> list[float]:
     if not natural:
         return []
     values, whirl = whirl_over_speed(model, interval)
-    low, high = held_speeds(model, interval, 1e-2 * natural, 1e2 * natural)
+    # Of the same search as the thresholds'.
+    first, last = _range(model, interval)
+    low, high = np.clip([1e-2 * natural, 1e2 * natural], *held_speeds(model, interval, first / AROUND, last * AROUND))
     return stability_thresholds.resonance_speeds(values, low, high, whirl=whirl)
 
 
@@ -146,7 +149,8 @@ def held_speeds(model, interval, low: float, high: float) -> tuple[float, float]
     def last(end):
         # Also on the way to an end that has a film again there may be none.
         inside, outside = own, end
-        for speed in np.geomspace(own, end, STEPS)[1:]:
+        way = stability_thresholds.spread(*sorted((own, end)))
+        for speed in way[1:] if end > own else way[-2::-1]:
             if not held(speed):
                 outside = speed
                 break
