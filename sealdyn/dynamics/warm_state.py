@@ -297,7 +297,7 @@ class Warming:
 
     def _slow(self, state: WarmState) -> complex | None:
         """Least damped eigenvalue (1/s) of the clearance and the rings' heat about a state; None without time
-        constants."""
+        constants, or between faces so far apart that their squeeze is rounding."""
         if self.capacity is None:
             return None
         film = self.scene.film
@@ -312,6 +312,8 @@ class Warming:
         slopes = [(film_at(*(at + d)) - film_at(*(at - d))) / (2.0 * d.sum()) for d in np.diag(steps)]
         squeezed, heated = np.transpose(slopes)
         axial, turning = self.damping(state.rise, state.clearance)
+        if not axial > 0.0:
+            return None
         matrix = ThermalStates(self.rings).matrix(squeezed / axial, heated, turning / axial)
         values = np.linalg.eigvals(matrix)
         slowest = values[np.argmax(values.real)]

@@ -224,6 +224,11 @@ def test_what_is_told_adds_up():
     assert heat["cold"]["clearance"] == pytest.approx(COLD["pump, 50 urad"][0], rel=TOLERANCE)
 
 
+@pytest.mark.filterwarnings("error")
+def test_faces_too_far_apart_to_squeeze_have_no_slow_eigenvalue():
+    assert at_work(sealdyn.example("pump_seal").with_(film__coning=9e12).scene)[1].slow is None
+
+
 def test_a_slow_eigenvalue_needs_every_time_constant():
     table = warm_seal().to_dict()["film"]["heat"]
     without = {**table, "rotor": {k: v for k, v in table["rotor"].items() if k != "time_constant"}}
