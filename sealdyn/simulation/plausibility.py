@@ -55,7 +55,7 @@ def cautions(scenario, run, outcome, leakage, heat, h_min, wear=0.0) -> list[Cau
         *_thin_film(scene, h_min),
         *_roughness_leakage(model, h_min),
         *_contact_arm(scene),
-        *(_heat(*heat) if model.heat is None else ()),
+        *(_heat(scene.film, *heat) if model.heat is None else ()),
         *_wear(scenario, wear),
     ]
     found += _flash(run, outcome)
@@ -188,13 +188,13 @@ def _contact_arm(scene):
         yield Caution(Concern.CONTACT_ARM, sentence)
 
 
-def _heat(rise, flux):
+def _heat(film, rise, flux):
     if math.isfinite(rise) and rise > WARM:
         heat = f"friction would heat the leakage by {rise:.4g} K"
         if rise > CARRIED:
             heat = f"the leakage cannot carry the friction's {1e-4 * flux:.4g} W/cm^2 of face"
-        counted = "film.heat with film.liquid counts what the rings take"
-        yield Caution(Concern.HEATING, f"not isothermal: {heat}, and the film has one viscosity; {counted}")
+        counted = "; film.heat with film.liquid counts what the rings take" if film.gas is None else ""
+        yield Caution(Concern.HEATING, f"not isothermal: {heat}, and the film has one viscosity{counted}")
 
 
 def _turbulence(model, leakage):
