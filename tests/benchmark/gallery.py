@@ -136,11 +136,14 @@ def failures():
 def robustness():
     """What came from outside, and how it went."""
     yield "attack", "attempts", "how they went", "came through", "hours", "code"
-    kinds, hours, codes, slowest = {}, {}, {}, {}
+    kinds, hours, codes, slowest, beside = {}, {}, {}, {}, {}
     for line in (GALLERY / "robustness.jsonl").read_text().splitlines():
         batch = json.loads(line)
         for name, count in batch["counts"].items():
-            what, outcome = name.split(": ", 1)
+            what, _, outcome = name.partition(": ")
+            if not outcome:
+                beside[what] = beside.get(what, 0) + count
+                continue
             if outcome.endswith("(ms)"):
                 slowest[what] = max(slowest.get(what, 0), count)
                 continue
@@ -151,6 +154,8 @@ def robustness():
         went = ", ".join(f"{outcome} {count}" for outcome, count in outcomes.items() if outcome != "escaped")
         code = ", ".join(codes[what])
         yield what, str(outcomes.total()), went, str(outcomes["escaped"]), number(hours[what]), code
+    for what, count in beside.items():
+        yield what, str(count), "-", "-", "-", "-"
     for what, most in slowest.items():
         yield f"{what}, slowest", "-", f"{most / 1e3:.1f} s of processor time", "-", "-", "-"
 
