@@ -1,7 +1,7 @@
 """What IDA costs with a film of 400 unknowns (tests/radial_cells.py): by the compiled loop, through scikit-sundae, and
 there by where its derivatives come from.
 
-    PYTHONPATH=tests python tests/benchmark/film_with_unknowns.py
+    python tests/benchmark/film_with_unknowns.py
 
 Four turns of the FMS seal of tests/scenes.py, each way in turn in one process on one thread; the minimum of fifteen
 rounds (machines are noisy), the slow ways in three of them.  On a two-core x86-64 machine, busy:
@@ -11,8 +11,12 @@ SuperLU_MT takes half and the film's residual a quarter.
 """
 
 import math
+import sys
 import time
 from functools import partial
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
 
 import numpy as np
 from radial_cells import film_of

@@ -1,6 +1,6 @@
 """How cost grows: turns, samples, quadrature points, unknowns, scenes, cores.
 
-    PYTHONPATH=tests python tests/benchmark/growth.py [figure.png] [--quick]
+    python tests/benchmark/growth.py [figure.png] [--quick]
 
 The reference FMS seal but where unknowns are counted: that is its film as finite volumes (tests/radial_cells.py).  Each
 number is the least of several runs in turn; read how it grows, not how large it is.
@@ -9,9 +9,12 @@ number is the least of several runs in turn; read how it grows, not how large it
 import argparse
 import math
 import os
+import sys
 import tempfile
 from functools import partial
 from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
 
 import numpy as np
 from radial_cells import film_of

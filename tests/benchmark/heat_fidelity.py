@@ -12,18 +12,18 @@ import sys
 import time
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).parents[1]))
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "ladder"))
+
 import matplotlib.pyplot as plt
+import own_warm
+from test_warm_seals_whole import SEALS
+from warm_seals import OIL, ROUGH, warm_seal
 
-HERE = Path(__file__).parents[1]
-sys.path[:0] = [str(HERE), str(HERE / "ladder")]
-
-import own_warm  # noqa: E402
-from test_warm_seals_whole import SEALS  # noqa: E402
-from warm_seals import OIL, ROUGH, warm_seal  # noqa: E402
-
-from sealdyn.closed_form.ring_fin import ring_fin  # noqa: E402
-from sealdyn.dynamics.warm_state import Warming  # noqa: E402
-from sealdyn.faces.ring_heat import conduction, ring_heat  # noqa: E402
+from sealdyn.closed_form.ring_fin import ring_fin
+from sealdyn.dynamics.warm_state import Warming
+from sealdyn.faces.ring_heat import conduction, ring_heat
 
 GALLERY = Path(__file__).parents[2] / "outputs" / "gallery"
 CHANGES = {"pump, 400 urad": {"film.coning": 4e-4}, "pump, 50 urad": {}, "pump_seal": ROUGH, "oil": OIL}

@@ -30,6 +30,8 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).parents[1]))
+
 import numpy as np
 from hard_families import FAMILIES, one_of
 from judge import (

@@ -1,6 +1,6 @@
 """Quick to begin, quick by the thousand: each figure as a ratio beside its goal.
 
-    PYTHONPATH=tests python tests/benchmark/quickness.py [--repeats 5] [--cold] [--keep FILE.json] [--parts PART ...]
+    python tests/benchmark/quickness.py [--repeats 5] [--cold] [--keep FILE.json] [--parts PART ...]
 
 Processor time (user and system) of whole processes over that of importing numba, scipy.integrate, h5py and pydantic, of
 runs in one warm process over each other, and of a whole run over the C program of limit.py: both sides take turns, and

@@ -6,8 +6,11 @@ Reference FMS seal, radial film, 400 turns.  Times are minima of several runs in
 """
 
 import math
+import sys
 import time
 from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
 
 import numpy as np
 from scenes import started

@@ -15,6 +15,9 @@ those are begun with a small tilt and left to themselves in time; the tilt must 
 import sys
 import time
 from dataclasses import replace
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
 
 import numpy as np
 from eigenvalue_scan import growth, thresholds

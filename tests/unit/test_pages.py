@@ -1,6 +1,8 @@
-"""The generated pages are current: scenarios/README.md and outputs/gallery/README.md."""
+"""The generated pages are current: scenarios/README.md and outputs/gallery/README.md; their scripts run as typed."""
 
+import ast
 import re
+from pathlib import Path
 
 import pytest
 from benchmark import gallery, key_reference
@@ -28,3 +30,14 @@ def test_every_key_has_a_meaning():
         for key, holds in table["properties"].items():
             meaning = holds.get("description", "").splitlines()[:1]
             assert meaning and not re.match("an? .* in ", meaning[0]), key
+
+
+TESTS = Path(__file__).parents[1]
+
+
+@pytest.mark.parametrize("script", sorted((TESTS / "benchmark").glob("*.py")), ids=lambda script: script.stem)
+def test_a_script_finds_what_it_shares_with_the_tests(script):
+    """Python looks beside the script alone."""
+    imports = [node for node in ast.walk(ast.parse(script.read_text())) if isinstance(node, ast.ImportFrom)]
+    shared = [node.module for node in imports if (TESTS / f"{(node.module or '').split('.')[0]}.py").exists()]
+    assert not shared or "sys.path.insert(0, str(Path(__file__).parents[1]))" in script.read_text()
