@@ -20,7 +20,7 @@ and equal kappa d/dtheta at the edges; at an open end sin(lambda theta) from the
 
 import math
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -88,6 +88,8 @@ class Mesh:
         return np.flatnonzero(~(self.inner | self.outer))
 
 
+# Films at many clearances and speeds have one mesh.
+@lru_cache(maxsize=16)
 def mesh_of(
     pattern: Spiral | Boxes, inner_radius: float, outer_radius: float, columns: int, times: int = 1, bisections: int = 8
 ) -> Mesh:
