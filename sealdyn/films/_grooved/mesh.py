@@ -30,6 +30,7 @@ from ...faces.pattern import Boxes, Edges, Spiral
 
 # Columns an edge may move in a row, and the height of rows over the width of columns where no edge is inclined.
 MOVES, PLAIN = 0.75, 0.25
+MOST_NODES = 40_000
 # Two radii, two angles that are the same.
 SAME = 1e-9
 # Angles (rad) by which a pattern's edge may bend and be straight.
@@ -94,7 +95,7 @@ def mesh_of(
     pattern: Spiral | Boxes, inner_radius: float, outer_radius: float, columns: int, times: int = 1, bisections: int = 8
 ) -> Mesh:
     """One pitch of a pattern between the radii (m) of a face: `columns` to the pitch, rows to suit, both so many
-    `times` over, and so many bisections at tips."""
+    `times` over, and so many bisections at tips.  Raises ValueError for more than MOST_NODES."""
     edges = pattern.edges
     pitch = 2.0 * math.pi / pattern.count
     width = pitch / columns
@@ -104,6 +105,8 @@ def mesh_of(
     u = _divided([math.log(r) for r in _breaks(edges, inner_radius, outer_radius)], height, times)
     xi = _divided([*edges.angles, edges.angles[0] + pitch], width, times)[:-1]
     low, high = np.log(edges.twisted)
+    if len(u) * len(xi) > MOST_NODES:
+        raise ValueError(f"{len(u) * len(xi)} nodes to a pitch, more than {MOST_NODES}: grooves so many and so flat")
     phi = xi + edges.slope * (np.clip(u, low, high) - math.log(edges.reference))[:, None]
 
     rows, n = len(u), len(xi)

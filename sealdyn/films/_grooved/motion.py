@@ -74,6 +74,13 @@ class LinearFilm:
         return self.weights @ factors.solve(-(self.by_film + s * self.by_rate).astype(complex))
 
 
+def axial_film(steady: Steady) -> LinearFilm:
+    """Force over a sector per dz, of any count of pitches."""
+    film, mesh = steady.film, steady.film.mesh
+    shapes = np.ones((len(mesh.u), 1)), np.ones((len(mesh.corners), 1))
+    return LinearFilm(steady, shapes, film.weights(1)[None])
+
+
 @dataclass(frozen=True, eq=False)
 class Motion:
     """Small motion about a steady film whose pattern turns at `frame` (rad/s)."""
@@ -88,9 +95,7 @@ class Motion:
     @cached_property
     def axial(self) -> LinearFilm:
         """Force per dz over a sector."""
-        film, mesh = self.steady.film, self.steady.film.mesh
-        shapes = np.ones((len(mesh.u), 1)), np.ones((len(mesh.corners), 1))
-        return LinearFilm(self.steady, shapes, film.weights(1)[None])
+        return axial_film(self.steady)
 
     @cached_property
     def tilt(self) -> LinearFilm:
@@ -207,3 +212,32 @@ def runout_answer(motion: Motion, ring: Ring, runout: complex) -> complex:
 def misalignment_answer(motion: Motion, ring: Ring, misalignment: complex) -> complex:
     """Tilt of a standing ring (rad, inertial) whose support is misaligned: K g_i/(K + Z'(-i W))."""
     return ring.angular_stiffness * misalignment / tilt_law(motion, ring)(0.0)
+
+
+# Frequencies of the count to a decade, decades below and above the pace of the ring, and the largest turn (rad) of the
+# law from one to the next.
+PER_DECADE, BELOW, ABOVE, TURN = 8, 4, 3, 1.0
+
+
+def unstable_roots(law, inertia: float) -> int:
+    """How many zeros an analytic `law` of `axial_law`, `tilt_law` has with a growing real part.
+
+    **Source** argument principle: along the imaginary axis upwards a law that goes with inertia s^2 turns by 2 pi less
+    for each zero on its right, which adds to the 2 pi of none.
+    **Valid** a film whose own motion between faces that stand still decays: it has no poles on the right."""
+    stiffness = max(abs(law(0.0)), abs(law(1j)))
+    pace = max((stiffness / inertia) ** 0.5, 1.0)
+    half = pace * 10.0 ** np.linspace(-BELOW, ABOVE, (BELOW + ABOVE) * PER_DECADE + 1)
+    at = [*(-half[::-1]), *half]
+    values = [law(1j * w) for w in at]
+    turned, k = 0.0, 0
+    while k < len(at) - 1:
+        turn = cmath.phase(values[k + 1] / values[k])
+        # Finer where it turns fast, but not for ever where it passes zero.
+        if abs(turn) > TURN and at[k + 1] - at[k] > 1e-6 * pace:
+            middle = 0.5 * (at[k] + at[k + 1])
+            at.insert(k + 1, middle)
+            values.insert(k + 1, law(1j * middle))
+            continue
+        turned, k = turned + turn, k + 1
+    return round(1.0 - turned / (2.0 * cmath.pi))
