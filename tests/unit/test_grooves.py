@@ -13,7 +13,7 @@ from sealdyn.dynamics.equilibrium import settle
 from sealdyn.dynamics.interface import opening_law
 from sealdyn.films import film_of
 from sealdyn.films._grooved.aligned import OpeningForce, aligned_film
-from sealdyn.films._grooved.motion import unstable_roots
+from sealdyn.films._grooved.motion import tilt_law, unstable_roots
 from sealdyn.scene.checks import scene_errors
 from sealdyn.scene.contact import Grooves
 from sealdyn.scene.excitation import Shaft
@@ -22,7 +22,7 @@ from sealdyn.scene.rings import Rotor, Stator, Support
 from sealdyn.scene.scene import Closing, Scene, SceneError
 from sealdyn.scene.variants import counterpart
 from sealdyn.simulation.simulate import simulate_in_memory
-from sealdyn.studies._grooved import modes
+from sealdyn.studies._grooved import modes, ring_of
 
 TEXT = """
 [shaft]
@@ -202,6 +202,17 @@ def test_a_ring_on_grooves_the_wrong_way_round_is_unstable():
     assert light["stable"] and found["unstable_axial"] == 2 and found["axial"][0] > 0.0
     both = seal(floats="stator rotor")
     assert modes(both, aligned_film(both, 3e-6, 8)) is None
+
+
+def test_the_ring_that_floats_spins_with_its_own_speed():
+    """What gyroscopic moments and the dampers of a ring that turns add to its law, by hand."""
+    rotor = seal(floats="rotor")
+    rotor = replace(rotor, rotor=replace(rotor.rotor, polar_inertia=6e-4))
+    ring, still = ring_of(rotor), ring_of(seal())
+    assert (ring.spin, ring.polar_inertia, still.spin) == (1000.0, 6e-4, 0.0)
+    motion, s = aligned_film(rotor, 3e-6, 8).motions[0], -200.0 + 3e4j
+    more = tilt_law(motion, ring)(s) - tilt_law(motion, still)(s)
+    assert more == pytest.approx(-1j * 6e-4 * 1000.0 * s - 1j * 1000.0 * 1.4, rel=1e-6)
 
 
 @pytest.mark.parametrize(
