@@ -146,8 +146,8 @@ def ring_of(scene) -> Ring | None:
 
 def modes(scene, found: AlignedFilm) -> dict | None:
     """Roots (1/s) of the ring on film and support in the inertial frame, [real, imaginary]: axial, tilt forward and
-    backward, those next to the motion without damping; and how many roots of each motion grow, counted.  None where
-    two rings float, or one without inertia."""
+    backward, those next to the motion without damping, None of a whirl that there is not; and how many roots of each
+    motion grow, counted.  None where two rings float, or one without inertia."""
     ring = ring_of(scene)
     if ring is None:
         return None
@@ -160,7 +160,8 @@ def modes(scene, found: AlignedFilm) -> dict | None:
             root = found.of_motion(
                 lambda motion, law=law, inertia=inertia, whirl=whirl: _root(law(motion, ring), inertia, whirl)
             )[0]
-            answer[name] = [root.real, root.imag]
+            # Without a whirl that way, overdamped, it is another's.
+            answer[name] = [root.real, root.imag] if name == "axial" or root.imag * whirl > 0.0 else None
         except ArithmeticError:
             answer[name] = None
     fine: Motion = found.motions[1]

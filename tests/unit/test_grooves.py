@@ -22,7 +22,7 @@ from sealdyn.scene.rings import Rotor, Stator, Support
 from sealdyn.scene.scene import Closing, Scene, SceneError
 from sealdyn.scene.variants import counterpart
 from sealdyn.simulation.simulate import simulate_in_memory
-from sealdyn.studies._grooved import modes, ring_of
+from sealdyn.studies._grooved import flows_over_grooves, modes, ring_of
 
 TEXT = """
 [shaft]
@@ -202,6 +202,29 @@ def test_a_ring_on_grooves_the_wrong_way_round_is_unstable():
     assert light["stable"] and found["unstable_axial"] == 2 and found["axial"][0] > 0.0
     both = seal(floats="stator rotor")
     assert modes(both, aligned_film(both, 3e-6, 8)) is None
+
+
+def test_upstream_pumping():
+    """The liquid flows against its pressure; the ring, overdamped, whirls forward only, at the film's ratio."""
+    row = ROWS["liquid_upstream_pumping"]
+    face = Film(0.026, 0.031, 8e5, 3e5, viscosity=1e-3, clearance=3e-6)
+    grooves = Grooves(10, 8e-6, 0.026, 0.0285, 0.5, angle=math.radians(-15.0))
+    scene = seal(face, [grooves], speed=300.0)
+    found = aligned_film(scene, 3e-6)
+    flows = flows_over_grooves(scene, 3e-6, 1000.0)
+    assert flows["leakage"] == pytest.approx(-row["expected"]["outflow"][0], rel=5e-3) and flows["mass_flow"] < 0.0
+    ring = modes(scene, found)
+    assert ring["stable"] and ring["tilt_backward"] is None
+    assert ring["tilt_forward"][1] / 300.0 == pytest.approx(0.526, abs=0.01)
+
+
+def test_two_grooves_have_an_equilibrium_but_no_one_stiffness_in_tilt():
+    scene = seal(rotor=[replace(SPIRAL, count=2)])
+    found = aligned_film(scene, 3e-6, 8)
+    assert found.better(lambda one: one.force)[0] > 0.0
+    with pytest.raises(SceneError) as refused:
+        modes(scene, found)
+    assert refused.value.key == "rotor.grooves.0.count"
 
 
 def test_the_ring_that_floats_spins_with_its_own_speed():

@@ -75,7 +75,9 @@ class AlignedFilm:
         count = self.fine.film.mesh.count
         if count < FEWEST:
             found = f"{count} pitches, whose stiffness in tilt is not the same about all axes"
-            raise SceneError("grooves.0.count", found, f"at least {FEWEST} grooves, as yet")
+            raise SceneError(
+                f"{self.fine.film.conditions.face}.grooves.0.count", found, f"at least {FEWEST} grooves, as yet"
+            )
         return Motion(self.coarse, self.frame), Motion(self.fine, self.frame)
 
     def of_motion(self, number):
