@@ -30,7 +30,7 @@ from ...faces.pattern import Boxes, Edges, Spiral
 
 # Columns an edge may move in a row, and the height of rows over the width of columns where no edge is inclined.
 MOVES, PLAIN = 0.75, 0.25
-MOST_NODES = 40_000
+MOST_NODES = 100_000
 # Two radii, two angles that are the same.
 SAME = 1e-9
 # Angles (rad) by which a pattern's edge may bend and be straight.
@@ -102,11 +102,11 @@ def mesh_of(
     height = width * (min(MOVES / abs(edges.slope), 2.0 * PLAIN) if edges.slope else PLAIN)
     # Of few wide pitches as many rows as columns.
     height = min(height, math.log(outer_radius / inner_radius) / columns)
+    if (nodes := columns * times**2 * math.log(outer_radius / inner_radius) / height) > MOST_NODES:
+        raise ValueError(f"{nodes:.3g} nodes to a pitch, more than {MOST_NODES}: grooves so many and so flat")
     u = _divided([math.log(r) for r in _breaks(edges, inner_radius, outer_radius)], height, times)
     xi = _divided([*edges.angles, edges.angles[0] + pitch], width, times)[:-1]
     low, high = np.log(edges.twisted)
-    if len(u) * len(xi) > MOST_NODES:
-        raise ValueError(f"{len(u) * len(xi)} nodes to a pitch, more than {MOST_NODES}: grooves so many and so flat")
     phi = xi + edges.slope * (np.clip(u, low, high) - math.log(edges.reference))[:, None]
 
     rows, n = len(u), len(xi)
