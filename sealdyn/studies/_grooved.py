@@ -9,7 +9,7 @@ from ..answers import Answer, Axis, Level, Panel, Series, Table
 from ..dynamics.equilibrium import settle
 from ..dynamics.interface import opening_law
 from ..faces.pattern import pumps
-from ..films._grooved.aligned import AlignedFilm, aligned_film
+from ..films._grooved.aligned import AlignedFilm, aligned_film, axial_stiffness
 from ..films._grooved.motion import Motion, Ring, axial_law, root_near, tilt_law, unstable_roots
 from ..numerics.piecewise_linear import initially
 from ..quantities import in_words
@@ -26,13 +26,14 @@ FREQUENCIES = np.concatenate([[0.01], np.linspace(0.5, 30.0, 60)])
 
 def flows_over_grooves(scene, clearance: float, carried: float) -> dict:
     """What flows and rubs at a clearance (m) at which the faces carry `carried` (N) beyond the lower pressure, by the
-    names of a root of the study equilibrium; also the `torque` (N m) of the shaft."""
+    names of a root of the study equilibrium; also the `torque` (N m) of the shaft, and the stiffness on finer meshes
+    than those of the curve."""
     found, film = aligned_film(scene, clearance), scene.film
     leakage, torque = _leakage(scene, found), found.better(lambda one: one.torque)[0]
     arm = 0.5 * (film.inner_radius + film.outer_radius)
     return {"friction_coefficient": abs(torque) / (carried * arm) if carried > 0.0 else None,
             "mass_flow": leakage * density_of(film), "leakage": leakage, "cavitated_fraction": 0.0,
-            "torque": torque}  # fmt: skip
+            "torque": torque, "stiffness": found.better(axial_stiffness)[0]}  # fmt: skip
 
 
 def _leakage(scene, found: AlignedFilm) -> float:

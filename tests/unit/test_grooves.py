@@ -173,6 +173,7 @@ def test_the_studies_of_a_dry_gas_seal(scenario, tmp_path):
     (root,) = found["roots"]
     assert root["film_force"] == pytest.approx(1e5 * AREA + ROW["force"], rel=3e-3)
     assert root["torque"] == pytest.approx(ROW["torque"], rel=2e-3)
+    assert root["stiffness"] == pytest.approx(ROW["axial_K_at_0W"], rel=2e-3)
     # From the high to the low pressure, at normal conditions.
     leakage = -ROW["outflow"] * 273.15 / 300.0 / 101325.0
     assert root["leakage"] == pytest.approx(leakage, rel=2e-3)

@@ -153,5 +153,9 @@ class OpeningForce:
             self.none_below[pressures] = max(n, self.none_below.get(pressures, n))
             return math.nan, math.nan
         force = film.better(lambda one: one.force)[0]
-        slope = film.better(lambda one: one.film.mesh.count * axial_film(one)(0.0)[0, 0].real)[0]
-        return force, slope * clearance * STRIDE
+        return force, -film.better(axial_stiffness)[0] * clearance * STRIDE
+
+
+def axial_stiffness(found: Steady) -> float:
+    """Of a steady film that moves slowly, N/m, of any count of grooves."""
+    return -found.film.mesh.count * float(axial_film(found)(0.0)[0, 0].real)
