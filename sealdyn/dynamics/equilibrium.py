@@ -236,7 +236,10 @@ def axial_shift(model, interval: Interval, speed: float | None = None) -> tuple[
 def _no_equilibrium(film, opening_force, law, inner, outer, roots, asperities):
     closing = law.at(inner, outer, initially(law.spring))
     reference = max(extent(film)[0], 1e-6)
-    tight, wide = (opening_force(c, inner, outer) for c in (reference / 100, reference * 100))
+    closed, wide = (opening_force(c, inner, outer) for c in (reference / 100, reference * 100))
+    # Over grooves no film is found that is too thin.
+    thinner = (opening_force(reference * 2.0**k, inner, outer) for k in range(-6, 7))
+    tight = closed if math.isfinite(closed) else next(filter(math.isfinite, thinner), math.nan)
     rounding = 1e-9 * abs(wide)
     if tight - wide > rounding:
         expected = f"between {wide:.4g} N, which this film carries wide open, and {tight:.4g} N, nearly closed"

@@ -30,7 +30,7 @@ from ..faces.geometry import (
 )
 from ..films import film_named, film_of
 from ..numerics.piecewise_linear import initially
-from ..scene.contact import contact_thresholds, waves_of
+from ..scene.contact import contact_thresholds, grooves_of, waves_of
 from ..scene.film import Coefficients, aligned_gaps, cells_of, coned
 from ..scene.scene import SceneError
 from .condensation import NOISE, FilmDerivatives, LinearFilm, Slopes, film_slopes, linearise
@@ -281,6 +281,10 @@ def opening_parts(scene, film=None):
     """Function `forces(clearance, p_i, p_o)` (N, N): opening force of the film, with the floor of rough faces, and of
     the asperities that touch, of a scene's aligned faces at rest; clearance in m, pressures in Pa.  The scene names its
     film, unless a `film` is given."""
+    if grooves_of(scene)[1]:
+        from ..films._grooved.aligned import OpeningForce
+
+        return OpeningForce(scene).parts
     film = lender(scene, film_of(scene, film))
     table, surfaces = coned(replace(scene, film=prepared(scene, film))), {}
     if waves_of(scene) and film.standing_waves:

@@ -10,7 +10,7 @@ import pkgutil
 from functools import cache
 
 from ..numerics.piecewise_linear import points
-from ..scene.contact import turning_waves, waves_of, waviness_errors
+from ..scene.contact import SERVED, grooves_of, turning_waves, waves_of, waviness_errors
 from ..scene.film import profile_errors
 from ..scene.scene import SceneError
 from ._contract import Film, Offer
@@ -85,6 +85,8 @@ def film_of(scene, film: Film | None = None) -> Film:
     """The film that a scene (or what has its tables) asks for, or the `film` given instead; "auto" is the highest
     that takes the scene's faces, until a choice is certified.  Raises SceneError where it cannot take them."""
     table, waves = scene.film, waves_of(scene)
+    if ring := grooves_of(scene)[0]:
+        raise SceneError(f"{ring}.grooves", "grooves in a face", f"none, or one of the {SERVED}")
     if film is None:
         able, name = film_names(table, waves), table.model
         if name == "auto":

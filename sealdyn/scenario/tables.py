@@ -15,6 +15,7 @@ from ..films import all_film_names, film_of
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene.application import Application, RadialApplication, application_errors
 from ..scene.checks import scene_errors
+from ..scene.contact import grooves_of
 from ..scene.excitation import Motion
 from ..scene.radial import RADIAL, RadialScene, radial_errors
 from ..scene.rings import INERTIAL, RING_NAMES, with_inertia
@@ -189,7 +190,8 @@ def _impossible(file: ScenarioFile) -> list[SceneError]:
         wrong = application_errors(file.application) + unknown_rules(file.application.acknowledge)
         bad += [SceneError(f"application.{key}", found, expected) for key, found, expected in wrong]
     try:
-        _ = bad or film_of(file)
+        # Over grooves no film runs in time yet; two studies have one of their own.
+        _ = bad or grooves_of(file)[1] or film_of(file)
     except SceneError as error:
         bad.append(error)
     return bad

@@ -5,7 +5,15 @@ import math
 
 from ..numerics.piecewise_linear import PiecewiseLinear, initially, points
 from ..units import Temperature, Viscosity
-from .contact import contact_errors, contact_thresholds, film_in_words, limit_in_words, waves_of, waviness_errors
+from .contact import (
+    contact_errors,
+    contact_thresholds,
+    film_in_words,
+    grooves_errors,
+    limit_in_words,
+    waves_of,
+    waviness_errors,
+)
 from .excitation import motion_errors, random_errors
 from .film import aligned_gaps, coned, follows_speed, pads_errors, profile_errors, reynolds_errors
 from .gas import GASES, gas_of
@@ -29,7 +37,7 @@ def scene_errors(scene, run) -> list[SceneError]:
     several parts only where each is possible."""
     bad = _broken(_film, scene) or _broken(_profile, scene)
     bad += _broken(_cavitation, scene.film) + _broken(_liquid if scene.film.gas is None else _gas, scene.film)
-    bad += [SceneError(*error) for error in (*waviness_errors(scene), *elastic_errors(scene))]
+    bad += [SceneError(*error) for error in (*waviness_errors(scene), *elastic_errors(scene), *grooves_errors(scene))]
     bad += [SceneError(*error) for error in (heat_errors(scene) if scene.film.heat is not None else ())]
     bad += _broken(_closing, scene)
     for name, ring in (("stator", scene.stator), ("rotor", scene.rotor)):

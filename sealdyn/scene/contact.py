@@ -1,12 +1,13 @@
 """The `[contact]` table: roughness, strength, friction and wear of faces that may touch; and the waviness of the faces,
-`[[stator.waviness]]` and `[[rotor.waviness]]`."""
+`[[stator.waviness]]` and `[[rotor.waviness]]`, and their spiral grooves and T-grooves, `[[rotor.grooves]]` and
+`[[stator.grooves]]`."""
 
 import math
 from dataclasses import dataclass
 from typing import Literal
 
 from ..numerics.piecewise_linear import points
-from ..units import Angle, AsperityDensity, Height, Roughness, Share, Stress, WearCoefficient
+from ..units import Angle, AsperityDensity, Height, Radius, Roughness, Share, Stress, WearCoefficient
 
 # Most waves of both faces together: kernels keep room for them.
 MOST_WAVES = 16
@@ -62,6 +63,119 @@ def waviness_errors(scene) -> list[tuple[str, str, str]]:
     if waves and scene.contact and scene.film.model != "reynolds":
         expected = 'film.model = "reynolds", or no such table: other films end a run where wavy faces meet'
         bad.append(("contact", "a table beside wavy faces", expected))
+    return bad
+
+
+# What serves a scene with grooves so far.
+SERVED = "studies equilibrium, load-support, stribeck and coefficients: nothing else reckons with grooves yet"
+
+
+@dataclass(frozen=True)
+class Grooves:
+    """One row of equal grooves with sharp edges.
+
+    Spiral: r = inner_radius exp(theta tan(angle)) along an edge, straight in (ln r, theta).  Tee: arms between the two
+    radii over `share` of the pitch, and a stem outwards from their middle, with radial sides."""
+
+    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
+
+    count: int
+    """Grooves to the circle."""
+    depth: Height
+    """By which the film is thicker in them."""
+    inner_radius: Radius
+    """Where they begin; that of the face where they open there."""
+    outer_radius: Radius
+    """Where they end, or the arms of a tee."""
+    share: float
+    """Share of the pitch that is groove, or arms."""
+    shape: Literal["spiral", "tee"] = "spiral"
+    """Spiral grooves, or arms with a stem."""
+    angle: Angle | None = None
+    """Of a spiral to the circle: positive where the groove's radius grows with theta, the sense of a positive shaft
+    speed."""
+    stem_outer_radius: Radius | None = None
+    """Of a tee: where its stem ends."""
+    stem_share: float | None = None
+    """Of a tee: share of the pitch that is stem."""
+    phase: Angle = 0.0
+    """Angle of the middle of the first groove at its inner radius, at the angle zero of its ring."""
+
+
+def grooves_of(scene) -> tuple[str, tuple[Grooves, ...]]:
+    """The ring that has grooves, "rotor" or "stator", and them; "" and none where neither has any."""
+    for name in ("rotor", "stator"):
+        if getattr(scene, name).grooves:
+            return name, tuple(getattr(scene, name).grooves)
+    return "", ()
+
+
+def grooves_errors(scene) -> list[tuple[str, str, str]]:
+    """What a scene with grooves cannot have: (key, found, expected)."""
+    name, grooves = grooves_of(scene)
+    if not grooves:
+        return []
+    key = f"{name}.grooves"
+    if len(grooves) > 1 or (name == "rotor" and scene.stator.grooves):
+        return [(key, "more than one row of grooves", "one row, in one of the faces")]
+    return [(f"{key}.0.{part}", *words) for part, *words in _shape_errors(grooves[0], scene.film)] or [
+        (part, found, f"{wanted} beside {key}") for part, found, wanted in _beside_errors(scene)
+    ]
+
+
+def _shape_errors(one: Grooves, film) -> list[tuple[str, str, str]]:
+    bad, tee = [], one.shape == "tee"
+    if one.count < 1:
+        bad.append(("count", f"{one.count}", "a whole number from 1"))
+    if not 0.0 <= one.depth < math.inf:
+        bad.append(("depth", f"{one.depth:g} m", "a finite depth >= 0, by which the film is thicker in a groove"))
+    if not film.inner_radius <= one.inner_radius < one.outer_radius <= film.outer_radius:
+        found = f"{one.inner_radius:g} to {one.outer_radius:g} m"
+        expected = f"radii that increase, between {film.inner_radius:g} and {film.outer_radius:g} m, those of the face"
+        bad.append(("inner_radius", found, expected))
+    if not 0.0 < one.share < 1.0:
+        bad.append(("share", f"{one.share:g}", "a share of the pitch above 0 and below 1"))
+    for part in ("stem_outer_radius", "stem_share"):
+        if (getattr(one, part) is not None) != tee:
+            bad.append((part, "nothing" if tee else "a value", "a value" if tee else 'nothing, or shape = "tee"'))
+    if tee and not bad:
+        if not one.outer_radius < one.stem_outer_radius <= film.outer_radius:
+            expected = f"more than outer_radius = {one.outer_radius:g} m, at most that of the face"
+            bad.append(("stem_outer_radius", f"{one.stem_outer_radius:g} m", expected))
+        if not 0.0 < one.stem_share < one.share:
+            bad.append(("stem_share", f"{one.stem_share:g}", f"above 0 and below share = {one.share:g}, the arms"))
+    if tee and one.angle is not None:
+        bad.append(("angle", "a value", 'nothing: the sides of shape = "tee" are radial'))
+    if not tee and not (one.angle is not None and 0.0 < abs(one.angle) < 0.5 * math.pi):
+        found = "nothing" if one.angle is None else f"{one.angle:g} rad"
+        expected = (
+            "the groove's angle to the circle, between 0 and 90 deg, positive where its radius grows with theta, "
+            "negative the other way round (papers that say 165 deg mean -15 deg, others count from the radius)"
+        )
+        bad.append(("angle", found, expected))
+    return bad
+
+
+def _beside_errors(scene) -> list[tuple[str, str, str]]:
+    """What no film over grooves reckons with yet."""
+    film, gas = scene.film, scene.film.gas is not None
+    models = ("auto", "gas_reynolds" if gas else "reynolds")
+    has = {
+        "film.profile": film.profile, "film.pads": film.pads, "film.inertia": film.inertia, "film.heat": film.heat,
+        "film.cavitation_pressure": film.cavitation_pressure, "contact": scene.contact,
+        "stator.elastic": scene.stator.elastic, "stator.secondary_seal": scene.stator.secondary_seal,
+        "rotor.secondary_seal": scene.rotor.secondary_seal, "stator.waviness": waves_of(scene),
+    }  # fmt: skip
+    bad = [
+        (key, "a value", "nothing")
+        for key, value in has.items()
+        if not (value is None or value is False or value == [])
+    ]
+    if film.model not in models:
+        bad.append(("film.model", f'"{film.model}"', f'"{models[0]}" or "{models[1]}"'))
+    for key, only in (("geometry", "cylindrical"), ("tilt_radius", "local")):
+        if getattr(film, key) != only:
+            bad.append((f"film.{key}", f'"{getattr(film, key)}"', f'"{only}"'))
     return bad
 
 

@@ -29,7 +29,7 @@ from ..units import (
     Varying,
     Velocity,
 )
-from .contact import Waviness
+from .contact import Grooves, Waviness
 from .liquid import ThermalConductivity
 
 Expansion = Annotated[float, Quantity("thermal expansion", "1/K", '"4.5e-6 1/K"', (), 0, True,
@@ -331,6 +331,8 @@ class Stator:
     """Of a stator that turns with a carrier of its own (counter-rotation: negative)."""
     waviness: list[Waviness] = field(default_factory=list)
     """Waves around its face, which turn with it."""
+    grooves: list[Grooves] = field(default_factory=list)
+    """Grooves in its face, which turn with it."""
     elastic: ElasticRing | None = None
     """A ring that bends: its waviness is what it was made with, and less is left under load."""
     support: Support | None = None
@@ -368,6 +370,8 @@ class Rotor:
     """Harmonics of the axial motion of the rotor's carrier."""
     waviness: list[Waviness] = field(default_factory=list)
     """Waves around its face, which turn with it."""
+    grooves: list[Grooves] = field(default_factory=list)
+    """Grooves in its face, which turn with it."""
     support: Support | None = None
     """Springs and dampers to the shaft: the rotor floats."""
     secondary_seal: SecondarySeal | None = None

@@ -11,7 +11,7 @@ common, the greatest common divisor, and a moment is what repeats itself once.
 import math
 
 from ..numerics.piecewise_linear import points
-from .contact import waves_of
+from .contact import grooves_of, waves_of
 
 
 def alike_sectors(scene, faces_press: bool = True) -> int:
@@ -22,9 +22,9 @@ def alike_sectors(scene, faces_press: bool = True) -> int:
 
 
 def face_orders(scene) -> list[int]:
-    """Orders of what the faces of a scene have around the circle: waves and pads."""
+    """Orders of what the faces of a scene have around the circle: waves, pads and grooves."""
     waves = {wave.order for wave in waves_of(scene) if wave.amplitude}
-    return sorted(waves | {pads.count for pads in scene.film.pads if pads.depth})
+    return sorted(waves | {row.count for row in (*scene.film.pads, *grooves_of(scene)[1]) if row.depth})
 
 
 def faces_tilt(scene) -> bool:

@@ -48,7 +48,7 @@ LEFT_OUT = {
 CARRIED = ("mass", "transverse_inertia", "polar_inertia", "body", "unphysical_inertia", "misalignment", "support",
            "secondary_seal")  # fmt: skip
 # What a face keeps, whichever side its ring is on.
-FACE = ("waviness",)
+FACE = ("waviness", "grooves")
 
 
 def part(scene, key: str) -> Any:
@@ -189,12 +189,13 @@ def counterpart(scene: Scene) -> Scene:
             runout_phase=stator.misalignment_direction,
             axial_runout=rotor.axial_runout,
             waviness=stator.waviness,
+            grooves=stator.grooves,
         )
     else:
         moved = {name: getattr(stator, name) for name in CARRIED + FACE}
         new_rotor = Rotor(**moved, misalignment_phase=stator.misalignment_direction, axial_runout=rotor.axial_runout)
         new_stator = Stator(misalignment=rotor.runout, misalignment_direction=rotor.runout_phase, speed=stator.speed,
-                            waviness=rotor.waviness)  # fmt: skip
+                            waviness=rotor.waviness, grooves=rotor.grooves)  # fmt: skip
     start = Initial(rotor=scene.initial.stator, stator=scene.initial.rotor)
     return replace(scene, rotor=new_rotor, stator=new_stator, initial=start)
 

@@ -25,7 +25,7 @@ from ..scenario.overrides import radius_key
 from ..scenario.reader import Scenario
 from ..scenario.settings import bare_settings, study_settings, without, written_settings
 from ..scene import variants
-from ..scene.contact import waves_of
+from ..scene.contact import SERVED, grooves_of, waves_of
 from ..scene.radial import RadialScene
 from ..scene.scene import SceneError
 from ..scene.symmetry import face_orders, faces_tilt
@@ -215,6 +215,8 @@ def _refuse_seal(name: str, info: Info, scene):
         raise SceneError(_key_of_pattern(scene), "wavy faces", expected)
     if scene.film.pads:
         raise SceneError("film.pads", "pads", f"none: this study ({name}) knows faces that are the same all around")
+    if grooved := grooves_of(scene)[0]:
+        raise SceneError(f"{grooved}.grooves", "grooves in a face", f"none, or one of the {SERVED}")
 
 
 def _key_of_pattern(scene) -> str:

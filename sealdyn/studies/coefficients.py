@@ -13,12 +13,13 @@ from ..dynamics.model import Model
 from ..faces.film_thickness import h_min
 from ..quantities import in_words
 from ..scenario.settings import Words, values_in_si
-from ..scene.contact import waves_of
+from ..scene.contact import grooves_of, waves_of
 from ..scene.scene import SceneError
 from ..scene.variants import frozen_at_start, tilting, with_values
 from ..simulation.film_error import steady_tilt
 from ..units import Angle, Length, Speed, Tilt
 from . import Info
+from ._grooved import ERRORS, coefficients_over_grooves
 
 ACCURACY = 1e-10
 STIFFNESS_UNITS = [["N/m", "N/rad", "N/rad"], ["N", "N*m/rad", "N*m/rad"], ["N", "N*m/rad", "N*m/rad"]]
@@ -34,6 +35,10 @@ INFO = Info(
     units={
         "speed": "rad/s", "frequency": "rad/s", "coning": "rad", "clearance": "m", "tilt": "rad", "axial_opening": "m",
         "stiffness": STIFFNESS_UNITS, "damping": DAMPING_UNITS,
+        # Over grooves.
+        "leakage": "m^3/s", "mass_flow": "kg/s", "torque": "N*m", "film_force": "N", "least_pressure": "Pa",
+        **dict.fromkeys(("modes/axial", "modes/tilt_forward", "modes/tilt_backward"), "1/s"),
+        **dict.fromkeys((f"error/{name}" for name in ERRORS), "1"),
         **dict(zip(NAMES, [unit for row in STIFFNESS_UNITS + DAMPING_UNITS for unit in row], strict=True)),
     },
     along={
@@ -86,6 +91,11 @@ class Settings:
 def run(scenario, settings, tools) -> Answer:
     """Matrices aligned and tilted, and sweeps."""
     scene = frozen_at_start(scenario.scene)
+    if grooves_of(scene)[1]:
+        answer = coefficients_over_grooves(scenario, scene, settings)
+        names = {"order": list(ORDER), "stiffness_units": STIFFNESS_UNITS, "damping_units": DAMPING_UNITS}
+        table = {"table": columns_of(answer.numbers["map"])} if "map" in answer.numbers else {}
+        return replace(answer, numbers=answer.numbers | names | table)
     model, speed = Model(scene, ACCURACY), scene.shaft.speed
     tilted = model if model.unknowns.with_tilt else Model(tilting(scene), ACCURACY)
     numbers = {

@@ -23,7 +23,7 @@ from ..dynamics.warm_state import at_work, unheated, warming
 from ..faces.geometry import CAVITATED, CONTACT_PRESSURE, CONTACT_TORQUE, FLOW_INNER, SPIN_DIFFERENCE, TORQUE, WEAR
 from ..numerics.piecewise_linear import initially
 from ..quantities import in_words, resolved
-from ..scene.contact import waves_of
+from ..scene.contact import grooves_of, waves_of
 from ..scene.film import coned
 from ..scene.gas import density_of
 from ..scene.scene import Closing, SceneError
@@ -31,6 +31,7 @@ from ..scene.variants import frozen_at_start
 from ..simulation.heat import heat_of, limits_of, limits_said
 from ..units import Length
 from . import Info
+from ._grooved import flows_over_grooves
 
 INFO = Info(
     timed=("run_in", 2),
@@ -39,7 +40,7 @@ INFO = Info(
     aligned=True,
     units={
         **dict.fromkeys(("opening_force", "film_force", "contact_force"), "N"), "stiffness": "N/m", "range": "m",
-        "clearance": "m", "held": "m", "mass_flow": "kg/s", "leakage": "m^3/s",
+        "clearance": "m", "held": "m", "mass_flow": "kg/s", "leakage": "m^3/s", "torque": "N*m",
         **dict.fromkeys(("wear_rate", "standing", "travelling"), "m/s"),
         **dict.fromkeys(("load_support", "friction_coefficient", "cavitated_fraction", "loop_gain", "shares"), "1"),
         **dict.fromkeys(("rise", "face_temperature"), "K"), "coning": "rad", "viscosity": "Pa*s",
@@ -200,6 +201,8 @@ def _flows(scene, clearance, carried) -> dict:
     (m^3/s) and mass flow (kg/s) from high to low, friction coefficient at the mean radius, share of the face that
     cavitates."""
     film = replace(scene.film, clearance=clearance)
+    if grooves_of(scene)[1]:
+        return flows_over_grooves(scene, clearance, carried)
     interface = Interface(replace(scene, film=film, closing=Closing()), FINE)
     s, _ = rest_state(interface.scene, clearance)
     flow_at_rest(interface, s)
@@ -309,6 +312,8 @@ def _notes(numbers, scene) -> list[str]:
     """What the rows do not say."""
     roots, notes = numbers["roots"], [f"Closing force: {numbers['closing_said']}."]
     wears = [face for face, coefficient in _wears(scene).items() if coefficient]
+    if grooves_of(scene)[1]:
+        notes.append("Over grooves forces are extrapolated from two coarse meshes, within 0.3 % in all cases tried.")
     if "fold" in numbers and (beyond := limits_said(numbers)):
         notes.append(beyond)
     if not roots:

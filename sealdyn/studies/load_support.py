@@ -25,7 +25,7 @@ INFO = Info(
     units={
         **OUTPUTS,
         # Of the balances within the rows.
-        "stiffness": "N/m", "mass_flow": "kg/s", "held": "m", "rows": "1",
+        "stiffness": "N/m", "torque": "N*m", "mass_flow": "kg/s", "held": "m", "rows": "1",
         **dict.fromkeys(("wear_rate", "standing", "travelling"), "m/s"),
     },
 )  # fmt: skip

@@ -1,0 +1,161 @@
+"""The aligned film of a scene with grooves: opening force over the clearance, flows and torque, small motion.
+
+Numbers are Richardson's of two meshes (`order` of balance.py), the finer of which has twice the columns.  The opening
+force over many clearances is read from values and slopes at clearances evenly spaced in their logarithm, cubic between
+them (Hermite), each computed when it is first needed.
+**Source** balance.py, motion.py; the slope of the force is the film's own axial stiffness at rest.
+**Valid** as they; a liquid's film is full: one whose pressure falls below zero would tear, and is refused.
+"""
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from ...faces.pattern import Box, Boxes, Spiral, tee
+from ...numerics.piecewise_linear import initially
+from ...scene.contact import Grooves, grooves_of
+from ...scene.film import coned
+from ...scene.gas import GasReynolds, gas_of, viscosity_of
+from ...scene.scene import SceneError
+from .balance import COLUMNS, Conditions, NoSteadyFilm, Steady, extrapolated, order, steady
+from .mesh import mesh_of
+from .motion import FEWEST, Motion, axial_film
+
+# Columns of the coarser mesh where a force is wanted at many clearances; e-folds of the clearance from node to node;
+# clearances (m) between which films are looked for.
+MANY, STRIDE, THINNEST, WIDEST = 8, 0.1, 2e-8, 2e-3
+
+
+def pattern_of(one: Grooves) -> Spiral | Boxes:
+    """The pattern of a row of grooves."""
+    if one.shape == "spiral":
+        return Spiral(one.count, one.inner_radius, one.outer_radius, one.angle, one.share, one.depth, one.phase)
+    arms = Box(one.inner_radius, one.outer_radius, one.share)
+    stem = Box(one.outer_radius, one.stem_outer_radius, one.stem_share)
+    return tee(one.count, one.depth, arms, stem, one.phase)
+
+
+def conditions_of(scene, clearance: float) -> Conditions:
+    """The film of a scene at its start, at a clearance (m)."""
+    film, gas = coned(scene), gas_of(scene.film)
+    slip = gas is not None and (film.gas_reynolds or GasReynolds()).slip
+    return Conditions(
+        clearance=clearance,
+        viscosity=initially(viscosity_of(film)),
+        inner_pressure=initially(film.inner_pressure),
+        outer_pressure=initially(film.outer_pressure),
+        relative_speed=initially(scene.shaft.speed) - initially(scene.stator.speed),
+        face=grooves_of(scene)[0],
+        coning=initially(film.coning),
+        gas=gas is not None,
+        slip=math.sqrt(0.5 * math.pi * gas.gas_constant * initially(film.temperature)) if slip else 0.0,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class AlignedFilm:
+    """The film of a scene with grooves at a clearance on a coarse and a fine mesh, and the order of their error."""
+
+    coarse: Steady
+    fine: Steady
+    frame: float
+
+    @cached_property
+    def order(self) -> float:
+        """Order of the meshes' error."""
+        return order(self.fine.film)
+
+    def better(self, number):
+        """Richardson's value of a `number(steady)` and the error of the fine mesh's."""
+        return extrapolated(number(self.coarse), number(self.fine), self.order)
+
+    @cached_property
+    def motions(self) -> tuple[Motion, Motion]:
+        """Small motion on both meshes.  Raises SceneError."""
+        count = self.fine.film.mesh.count
+        if count < FEWEST:
+            found = f"{count} pitches, whose stiffness in tilt is not the same about all axes"
+            raise SceneError(
+                f"{self.fine.film.conditions.face}.grooves.0.count", found, f"at least {FEWEST} grooves, as yet"
+            )
+        return Motion(self.coarse, self.frame), Motion(self.fine, self.frame)
+
+    def of_motion(self, number):
+        """As `better`, of a `number(motion)`."""
+        return extrapolated(*(number(motion) for motion in self.motions), self.order)
+
+    @property
+    def least_pressure(self) -> float:
+        """Pa, absolute."""
+        return float(self.fine.p.min())
+
+
+def aligned_film(scene, clearance: float, columns: int = COLUMNS) -> AlignedFilm:
+    """The film of a scene with grooves at a clearance (m), so many columns to a pitch of the coarser mesh.  Raises
+    SceneError where there is none, or where a liquid would tear."""
+    face, (one,) = grooves_of(scene)
+    film, pattern = scene.film, pattern_of(one)
+    try:
+        meshes = [mesh_of(pattern, film.inner_radius, film.outer_radius, columns, times) for times in (1, 2)]
+        pair = [steady(mesh, conditions_of(scene, clearance)) for mesh in meshes]
+    except (NoSteadyFilm, ValueError) as error:
+        where = f"a clearance of {clearance:.4g} m over grooves: {error}"
+        raise SceneError("film", where, "a clearance of the size of a film's") from None
+    frame = initially(scene.shaft.speed) if face == "rotor" else initially(scene.stator.speed)
+    found = AlignedFilm(*pair, frame)
+    if film.gas is None and found.least_pressure < 0.0:
+        where = f"a film that would tear (least pressure {found.least_pressure:.3g} Pa)"
+        raise SceneError(
+            f"{face}.grooves", where, "grooves over which the liquid keeps a pressure: films here are full"
+        )
+    return found
+
+
+class OpeningForce:
+    """Opening force (N) of the aligned film over the clearance, `force(clearance, inner_pressure, outer_pressure)`; NaN
+    where it has no film."""
+
+    def __init__(self, scene):
+        self.scene, self.nodes, self.none_below = scene, {}, {}
+
+    def __call__(self, clearance: float, inner_pressure: float, outer_pressure: float) -> float:
+        if not THINNEST <= clearance <= WIDEST:
+            return math.nan
+        at, pressures = math.log(clearance) / STRIDE, (inner_pressure, outer_pressure)
+        k = math.floor(at)
+        (f0, d0), (f1, d1) = (self._node(n, pressures) for n in (k, k + 1))
+        x = at - k
+        return float(
+            (1.0 + 2.0 * x) * (1.0 - x) ** 2 * f0 + x * x * (3.0 - 2.0 * x) * f1
+            + x * (1.0 - x) ** 2 * d0 - x * x * (1.0 - x) * d1
+        )  # fmt: skip
+
+    def parts(self, clearance: float, inner_pressure: float, outer_pressure: float) -> tuple[float, float]:
+        """The same, and that of asperities, which are not reckoned with."""
+        return self(clearance, inner_pressure, outer_pressure), 0.0
+
+    def _node(self, n: int, pressures) -> tuple[float, float]:
+        """Force (N) and its change per node (N) at node n."""
+        key = (n, *pressures)
+        if key not in self.nodes:
+            self.nodes[key] = self._found(n, pressures)
+        return self.nodes[key]
+
+    def _found(self, n: int, pressures) -> tuple[float, float]:
+        # Thinner than one that has no film there is none either.
+        if n <= self.none_below.get(pressures, -math.inf):
+            return math.nan, math.nan
+        clearance, inner, outer = math.exp(n * STRIDE), *pressures
+        table = replace(self.scene.film, inner_pressure=inner, outer_pressure=outer)
+        try:
+            film = aligned_film(replace(self.scene, film=table), clearance, MANY)
+        except SceneError:
+            self.none_below[pressures] = max(n, self.none_below.get(pressures, n))
+            return math.nan, math.nan
+        force = film.better(lambda one: one.force)[0]
+        return force, -film.better(axial_stiffness)[0] * clearance * STRIDE
+
+
+def axial_stiffness(found: Steady) -> float:
+    """Of a steady film that moves slowly, N/m, of any count of grooves."""
+    return -found.film.mesh.count * float(axial_film(found)(0.0)[0, 0].real)

@@ -1,0 +1,263 @@
+"""Triangles on one pitch of a pattern, with nodes on all its edges, in (ln r, phi).
+
+Reynolds' equation is Cartesian there.  Rows lie at constant r, columns at constant xi (faces/pattern.py), so that they
+follow the edges of a spiral; every quad is cut along its shorter diagonal.  Rows are so high that an edge moves 0.75
+columns from one to the next: one of the diagonals is then nearly radial.  The pitch closes in itself: a corner of a
+triangle is a node and by how many pitches it lies ahead of it.
+
+At a tip of a groove, and where one opens on an edge of given pressure, p^2 goes with a power lambda < 1 of the
+distance, and the error of the mesh with its width to the 2 lambda.  With kappa = (groove film/land film)^3 and the
+groove filling the angle b there
+
+    tip         kappa tan(lambda b/2) + tan(lambda (pi - b/2)) = 0,  or the same with cot
+    open end    kappa cot(lambda b) + cot(lambda (pi - b)) = 0
+
+and the longest edges of the triangles that touch one are bisected several times.
+**Source** derived here: harmonic functions cos (or sin) of lambda theta from the bisector on both sides, of equal value
+and equal kappa d/dtheta at the edges; at an open end sin(lambda theta) from the given edge.
+**Valid** one pattern that reaches at most to both edges of the face; ellipses have no such mesh.
+"""
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+from itertools import pairwise
+
+import numpy as np
+from scipy.optimize import brentq
+
+from ...faces.pattern import Boxes, Edges, Spiral
+
+# Columns an edge may move in a row, and the height of rows over the width of columns where no edge is inclined.
+MOVES, PLAIN = 0.75, 0.25
+MOST_NODES = 100_000
+# Two radii, two angles that are the same.
+SAME = 1e-9
+# Angles (rad) by which a pattern's edge may bend and be straight.
+STRAIGHT = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """Triangles on a sector that closes in itself.
+
+    `u` = ln r and `phi` (rad) of the nodes, (nodes,); `corners` and `shifts` (triangles, 3): the node at each corner,
+    counter-clockwise in (u, phi), and by how many sectors it lies ahead; `depth` (triangles,) of the pattern (m);
+    `inner`, `outer` (nodes,) bool: on an edge of the face; `count` of sectors to the circle."""
+
+    u: np.ndarray
+    phi: np.ndarray
+    corners: np.ndarray
+    shifts: np.ndarray
+    depth: np.ndarray
+    inner: np.ndarray
+    outer: np.ndarray
+    count: int
+
+    @property
+    def pitch(self) -> float:
+        """Angle (rad) of the sector."""
+        return 2.0 * math.pi / self.count
+
+    @cached_property
+    def corner_u(self) -> np.ndarray:
+        """(triangles, 3)."""
+        return self.u[self.corners]
+
+    @cached_property
+    def corner_phi(self) -> np.ndarray:
+        """(triangles, 3), rad."""
+        return self.phi[self.corners] + self.pitch * self.shifts
+
+    @cached_property
+    def area(self) -> np.ndarray:
+        """(triangles,), in (u, phi)."""
+        u, phi = self.corner_u, self.corner_phi
+        across = (u[:, 1] - u[:, 0]) * (phi[:, 2] - phi[:, 0])
+        return 0.5 * (across - (u[:, 2] - u[:, 0]) * (phi[:, 1] - phi[:, 0]))
+
+    @cached_property
+    def gradients(self) -> tuple[np.ndarray, np.ndarray]:
+        """d/du and d/dphi of the function that is 1 at a corner and 0 at the others, (triangles, 3) each."""
+        u, phi, twice = self.corner_u, self.corner_phi, 2.0 * self.area[:, None]
+        ahead, behind = [1, 2, 0], [2, 0, 1]
+        return (phi[:, ahead] - phi[:, behind]) / twice, (u[:, behind] - u[:, ahead]) / twice
+
+    @cached_property
+    def free(self) -> np.ndarray:
+        """Nodes whose pressure is not given."""
+        return np.flatnonzero(~(self.inner | self.outer))
+
+
+# Films at many clearances and speeds have one mesh.
+@lru_cache(maxsize=16)
+def mesh_of(
+    pattern: Spiral | Boxes, inner_radius: float, outer_radius: float, columns: int, times: int = 1, bisections: int = 8
+) -> Mesh:
+    """One pitch of a pattern between the radii (m) of a face: `columns` to the pitch, rows to suit, both so many
+    `times` over, and so many bisections at tips.  Raises ValueError for more than MOST_NODES."""
+    edges = pattern.edges
+    pitch = 2.0 * math.pi / pattern.count
+    width = pitch / columns
+    height = width * (min(MOVES / abs(edges.slope), 2.0 * PLAIN) if edges.slope else PLAIN)
+    # Of few wide pitches as many rows as columns.
+    height = min(height, math.log(outer_radius / inner_radius) / columns)
+    if (nodes := columns * times**2 * math.log(outer_radius / inner_radius) / height) > MOST_NODES:
+        raise ValueError(f"{nodes:.3g} nodes to a pitch, more than {MOST_NODES}: grooves so many and so flat")
+    u = _divided([math.log(r) for r in _breaks(edges, inner_radius, outer_radius)], height, times)
+    xi = _divided([*edges.angles, edges.angles[0] + pitch], width, times)[:-1]
+    low, high = np.log(edges.twisted)
+    phi = xi + edges.slope * (np.clip(u, low, high) - math.log(edges.reference))[:, None]
+
+    rows, n = len(u), len(xi)
+    node = np.arange(rows * n).reshape(rows, n)
+    ahead, shift = np.roll(node, -1, axis=1), np.zeros((rows, n), dtype=int)
+    shift[:, -1] = 1
+    after = np.roll(phi, -1, axis=1) + pitch * shift
+    # Of each quad: here and ahead in its row, and the same in the row above.
+    a, b, c, d = node[:-1].ravel(), ahead[:-1].ravel(), node[1:].ravel(), ahead[1:].ravel()
+    forward, backward = np.abs(after[1:] - phi[:-1]).ravel(), np.abs(phi[1:] - after[:-1]).ravel()
+    # Of two that are as long, so that meshes of mirrored patterns are mirror images.
+    up = forward < backward * (1.0 - SAME) if edges.slope > 0.0 else forward <= backward * (1.0 + SAME)
+    s, zero = shift[:-1].ravel(), np.zeros(len(a), dtype=int)
+    first = np.where(up[:, None], np.stack([a, d, b], 1), np.stack([a, c, b], 1))
+    second = np.where(up[:, None], np.stack([a, c, d], 1), np.stack([b, c, d], 1))
+    first_shift = np.where(up[:, None], np.stack([zero, s, s], 1), np.stack([zero, zero, s], 1))
+    second_shift = np.where(up[:, None], np.stack([zero, zero, s], 1), np.stack([s, zero, s], 1))
+    corners, shifts = np.concatenate([first, second]), np.concatenate([first_shift, second_shift])
+
+    radial, around = np.repeat(u, n), phi.ravel()
+    middle_u = radial[corners].mean(axis=1)
+    depth = pattern.depth_at(np.exp(middle_u), (around[corners] + pitch * shifts).mean(axis=1))
+    inner, outer = np.repeat(np.arange(rows) == 0, n), np.repeat(np.arange(rows) == rows - 1, n)
+    mesh = Mesh(radial, around, corners, shifts, depth, inner, outer, pattern.count)
+    tips = [tip.node for tip in tips_of(mesh)]
+    for _ in range(bisections):
+        mesh = _bisected(mesh, tips)
+    return mesh
+
+
+def _breaks(edges: Edges, inner_radius: float, outer_radius: float) -> list[float]:
+    """Radii (m) between which rows lie, those of the face's edges among them."""
+    between = [r for r in edges.radii if inner_radius * (1.0 + SAME) < r < outer_radius * (1.0 - SAME)]
+    return [inner_radius, *between, outer_radius]
+
+
+def _divided(breaks, step: float, times: int) -> np.ndarray:
+    """Values from the first break to the last, evenly between neighbours, a step over so many times apart."""
+    parts = [np.array(breaks[:1])]
+    for a, b in pairwise(breaks):
+        parts.append(np.linspace(a, b, max(round((b - a) / step), 2) * times + 1)[1:])
+    return np.concatenate(parts)
+
+
+def whole_circle(mesh: Mesh) -> Mesh:
+    """All sectors in one that closes in itself after a turn."""
+    nodes, sector = len(mesh.u), np.arange(mesh.count)
+    place = sector[:, None, None] + mesh.shifts
+    corners = (mesh.corners + nodes * (place % mesh.count)).reshape(-1, 3)
+    phi = (mesh.phi + mesh.pitch * sector[:, None]).ravel()
+    u, depth, inner, outer = (np.tile(part, mesh.count) for part in (mesh.u, mesh.depth, mesh.inner, mesh.outer))
+    return Mesh(u, phi, corners, (place // mesh.count).reshape(-1, 3), depth, inner, outer, 1)
+
+
+def _bisected(mesh: Mesh, tips: list[int]) -> Mesh:
+    """The mesh with the longest edges of all triangles at the tips bisected, longest first, on both sides of each."""
+    touching = np.flatnonzero(np.isin(mesh.corners, tips).any(axis=1))
+    u, phi = mesh.corner_u[touching], mesh.corner_phi[touching]
+    length = np.hypot(np.roll(u, -1, 1) - u, np.roll(phi, -1, 1) - phi)
+    longest = np.argmax(length, axis=1)
+    edges = {}
+    for triangle, k, size in zip(touching, longest, length[np.arange(len(touching)), longest], strict=True):
+        edges[_edge(mesh, triangle, k)] = size
+    for edge in sorted(edges, key=lambda edge: (-edges[edge], edge)):
+        mesh = _split(mesh, edge)
+    return mesh
+
+
+def _edge(mesh: Mesh, triangle: int, k: int) -> tuple[int, int, int]:
+    """An edge, from corner k of a triangle on: its nodes, and how many sectors the second lies ahead of the first."""
+    ends = [(int(mesh.corners[triangle, j]), int(mesh.shifts[triangle, j])) for j in (k, (k + 1) % 3)]
+    (a, ahead_a), (b, ahead_b) = sorted(ends)
+    return a, b, ahead_b - ahead_a
+
+
+def _split(mesh: Mesh, edge: tuple[int, int, int]) -> Mesh:
+    """The mesh with one more node, in the middle of an edge."""
+    a, b, ahead = edge
+    node = len(mesh.u)
+    at_a, at_b = mesh.corners == a, mesh.corners == b
+    corners, shifts, depth = [mesh.corners], [mesh.shifts], [mesh.depth]
+    for triangle in np.flatnonzero(at_a.any(axis=1) & at_b.any(axis=1)):
+        for k in range(3):
+            if _edge(mesh, triangle, k) == edge:
+                here, there = k, (k + 1) % 3
+                placed = int(mesh.shifts[triangle, here if mesh.corners[triangle, here] == a else there])
+                # The half with the first end stays where the triangle was, the other one comes last.
+                old, moved = mesh.corners[triangle].copy(), mesh.shifts[triangle].copy()
+                old[here], moved[here] = node, placed
+                corners.append(old[None])
+                shifts.append(moved[None])
+                depth.append(mesh.depth[triangle][None])
+                kept, stays = corners[0].copy(), shifts[0].copy()
+                kept[triangle, there], stays[triangle, there] = node, placed
+                corners[0], shifts[0] = kept, stays
+                break
+    return replace(
+        mesh,
+        u=np.append(mesh.u, 0.5 * (mesh.u[a] + mesh.u[b])),
+        phi=np.append(mesh.phi, 0.5 * (mesh.phi[a] + mesh.phi[b] + ahead * mesh.pitch)),
+        inner=np.append(mesh.inner, mesh.inner[a] and mesh.inner[b]),
+        outer=np.append(mesh.outer, mesh.outer[a] and mesh.outer[b]),
+        corners=np.concatenate(corners),
+        shifts=np.concatenate(shifts),
+        depth=np.concatenate(depth),
+    )
+
+
+@dataclass(frozen=True)
+class Tip:
+    """A node where an edge of the pattern bends, or ends on an edge of the face (`open`): the angle (rad) that the
+    groove fills there."""
+
+    node: int
+    filled: float
+    open: bool
+
+    def exponent(self, kappa: float) -> float:
+        """The smallest lambda, for kappa = (groove film/land film)^3 there."""
+        if kappa == 1.0:
+            return 1.0
+        half, rest = (self.filled, math.pi - self.filled) if self.open else (self.filled / 2, math.pi - self.filled / 2)
+
+        # Without poles; the least root of either lies between 1/2 and 1, one of a wide or a shallow groove beyond.
+        def odd(power):
+            a, b = power * half, power * rest
+            return kappa * math.cos(a) * math.sin(b) + math.sin(a) * math.cos(b)
+
+        def even(power):
+            a, b = power * half, power * rest
+            return kappa * math.sin(a) * math.cos(b) + math.cos(a) * math.sin(b)
+
+        found, scan = [1.0], np.linspace(0.3, 1.0 - 1e-6, 100)
+        for law in (odd,) if self.open else (odd, even):
+            values = [law(power) for power in scan]
+            for n in range(len(scan) - 1):
+                if values[n] * values[n + 1] < 0.0:
+                    found.append(brentq(law, scan[n], scan[n + 1]))
+                    break
+        return min(found)
+
+
+def tips_of(mesh: Mesh) -> list[Tip]:
+    """Where the pattern's edges bend or end."""
+    u, phi, nodes = mesh.corner_u, mesh.corner_phi, len(mesh.u)
+    after = np.stack([np.roll(u, -1, 1) - u, np.roll(phi, -1, 1) - phi])
+    before = np.stack([np.roll(u, 1, 1) - u, np.roll(phi, 1, 1) - phi])
+    angle = np.arccos(np.sum(after * before, 0) / np.sqrt(np.sum(after**2, 0) * np.sum(before**2, 0)))
+    deep = np.broadcast_to(mesh.depth[:, None] > 0.5 * mesh.depth.max(), angle.shape)
+    filled = np.bincount(mesh.corners.ravel(), (angle * deep).ravel(), nodes)
+    whole = np.bincount(mesh.corners.ravel(), angle.ravel(), nodes)
+    both = (filled > STRAIGHT) & (filled < whole - STRAIGHT) & (np.abs(filled - 0.5 * whole) > STRAIGHT)
+    edge = mesh.inner | mesh.outer
+    return [Tip(int(i), float(filled[i]), bool(edge[i])) for i in np.flatnonzero(both)]

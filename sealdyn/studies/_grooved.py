@@ -1,0 +1,250 @@
+"""What studies say of a scene with grooves: flows at an equilibrium; stiffness and damping over the frequency, with the
+roots of the ring that floats, in the inertial frame."""
+
+import math
+
+import numpy as np
+
+from ..answers import Answer, Axis, Level, Panel, Series, Table
+from ..dynamics.equilibrium import settle
+from ..dynamics.interface import opening_law
+from ..faces.pattern import pumps
+from ..films._grooved.aligned import AlignedFilm, aligned_film, axial_stiffness
+from ..films._grooved.motion import Motion, Ring, axial_law, root_near, tilt_law, unstable_roots
+from ..numerics.piecewise_linear import initially
+from ..quantities import in_words
+from ..scenario.settings import values_in_si
+from ..scene.contact import grooves_of
+from ..scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE, density_of
+from ..scene.scene import SceneError
+from ..scene.variants import frozen_at_start
+
+ERRORS = ("film_force", "leakage", "torque", "axial_stiffness", "tilt_stiffness")
+# Frequencies without any asked, in shaft speeds.
+FREQUENCIES = np.concatenate([[0.01], np.linspace(0.5, 30.0, 60)])
+
+
+def flows_over_grooves(scene, clearance: float, carried: float) -> dict:
+    """What flows and rubs at a clearance (m) at which the faces carry `carried` (N) beyond the lower pressure, by the
+    names of a root of the study equilibrium; also the `torque` (N m) of the shaft, and the stiffness on finer meshes
+    than those of the curve."""
+    found, film = aligned_film(scene, clearance), scene.film
+    leakage, torque = _leakage(scene, found), found.better(lambda one: one.torque)[0]
+    arm = 0.5 * (film.inner_radius + film.outer_radius)
+    return {"friction_coefficient": abs(torque) / (carried * arm) if carried > 0.0 else None,
+            "mass_flow": leakage * density_of(film), "leakage": leakage, "cavitated_fraction": 0.0,
+            "torque": torque, "stiffness": found.better(axial_stiffness)[0]}  # fmt: skip
+
+
+def _leakage(scene, found: AlignedFilm) -> float:
+    """Flow from the high to the low pressure, m^3/s; of a gas at normal conditions."""
+    film = scene.film
+    outwards = found.better(lambda one: one.flows[0])[0]
+    if film.gas is not None:
+        outwards *= NORMAL_TEMPERATURE / (initially(film.temperature) * NORMAL_PRESSURE)
+    return math.copysign(1.0, film.inner_pressure - film.outer_pressure) * outwards
+
+
+def coefficients_over_grooves(scenario, scene, settings) -> Answer:
+    """Matrices at rest (the lowest frequency) and at the shaft's, over frequency, and the roots of the ring; over
+    speeds the map of a clearance that the closing force decides follows it."""
+    speed = initially(scene.shaft.speed)
+    clearance, *_ = settle(scene, opening_law(scene))
+    found = aligned_film(scene, clearance)
+    given = {
+        name: None if words is None else values_in_si(scenario, str(words), "rad/s", f"--{name}")
+        for name, words in (("frequency", settings.frequency), ("speed", settings.speed))
+    }
+    if settings.coning is not None:
+        raise SceneError("study.coefficients.coning", "a value", "nothing over grooves, as yet")
+    frequencies = given["frequency"] or (max(abs(speed), 1.0) * FREQUENCIES).tolist()
+    if min(frequencies) <= 0.0:
+        expected = "frequencies above 0: a film over grooves has no one damping at rest"
+        raise SceneError("study.coefficients.frequency", f"{min(frequencies):g} rad/s", expected)
+    rows = [_matrices(found, w) for w in frequencies]
+    numbers = {
+        "film": "gas_reynolds" if scene.film.gas is not None else "reynolds",
+        "stiffness": rows[0][0], "damping": rows[0][1],
+        "at": {"clearance": clearance, "speed": speed, "frequency": frequencies[0]},
+        "against_frequency": {"frequency": frequencies, "stiffness": [k for k, _ in rows],
+                              "damping": [d for _, d in rows], "failed": [None] * len(rows)},
+        "leakage": _leakage(scene, found),
+        "torque": found.better(lambda one: one.torque)[0],
+        "film_force": found.better(lambda one: one.force)[0],
+        "error": _errors(found, frequencies[0]),
+        "least_pressure": found.least_pressure,
+        "pumping": _pumping(scene, found),
+        "modes": modes(scene, found),
+    }  # fmt: skip
+    numbers["mass_flow"] = numbers["leakage"] * density_of(scene.film)
+    if any(values is not None for values in given.values()):
+        numbers["map"] = _mapped(scene, given["speed"] or [speed], frequencies)
+    return Answer(numbers, _found(numbers), _tables(numbers), _panels(numbers), _notes(numbers))
+
+
+def _matrices(found: AlignedFilm, frequency: float) -> tuple[list, list]:
+    """Stiffness and damping (3, 3) at a frequency (rad/s)."""
+    k, d = found.of_motion(lambda motion: np.array(motion.matrices(frequency)))[0]
+    return k.tolist(), d.tolist()
+
+
+def _errors(found: AlignedFilm, frequency: float) -> dict:
+    """By which shares the finer mesh's numbers err, estimated; by the names of ERRORS."""
+    pairs = (
+        found.better(lambda one: one.force),
+        found.better(lambda one: one.flows[0]),
+        found.better(lambda one: one.torque),
+        found.of_motion(lambda motion: motion.axial_impedance(1j * frequency)),
+        found.of_motion(lambda motion: motion.tilt_impedance(1j * frequency)),
+    )
+    return {
+        name: float(error / abs(value)) if value else 0.0 for name, (value, error) in zip(ERRORS, pairs, strict=True)
+    }
+
+
+def _pumping(scene, found: AlignedFilm) -> str | None:
+    """Which way spiral grooves pump."""
+    one = grooves_of(scene)[1][0]
+    return pumps(one.angle, found.fine.film.conditions.entrainment) if one.shape == "spiral" else None
+
+
+def _mapped(scene, speeds, frequencies) -> dict:
+    """The map of the study coefficients, in the inertial frame."""
+    answer = {"speed": list(speeds), "frequency": list(frequencies), "frame": "inertial", "clearance": [],
+              "stiffness": [], "damping": [], "failed": []}  # fmt: skip
+    nothing = [[None] * 3] * 3
+    for speed in speeds:
+        try:
+            other = frozen_at_start(scene, speed=float(speed))
+            clearance, *_ = settle(other, opening_law(other))
+            found = aligned_film(other, clearance)
+            rows = [_matrices(found, w) for w in frequencies]
+        except SceneError as error:
+            clearance, rows = None, [(nothing, nothing)] * len(frequencies)
+            answer["failed"].append({"reason": str(error), "points": [{"speed": float(speed), "coning": None}]})
+        answer["clearance"].append([clearance] * len(frequencies))
+        answer["stiffness"].append([k for k, _ in rows])
+        answer["damping"].append([d for _, d in rows])
+    return answer
+
+
+# --- the ring ------------------------------------------------------------------------------------------
+
+
+def ring_of(scene) -> Ring | None:
+    """The ring that floats, None where both do, or where it has no inertia."""
+    floating = [name for name in ("stator", "rotor") if getattr(scene, name).support is not None]
+    if len(floating) != 1:
+        return None
+    ring = getattr(scene, floating[0])
+    spin = initially(scene.stator.speed) if floating[0] == "stator" else initially(scene.shaft.speed)
+    if not (ring.mass > 0.0 and ring.transverse_inertia > 0.0):
+        return None
+    support, (stiffness, damping) = ring.support, ring.support.tilt()
+    return Ring(ring.mass, ring.transverse_inertia, support.axial_stiffness, support.axial_damping, stiffness, damping,
+                ring.polar_inertia, spin)  # fmt: skip
+
+
+def modes(scene, found: AlignedFilm) -> dict | None:
+    """Roots (1/s) of the ring on film and support in the inertial frame, [real, imaginary]: axial, tilt forward and
+    backward, those next to the motion without damping, None of a whirl that there is not; and how many roots of each
+    motion grow, counted.  None where two rings float, or one without inertia."""
+    ring = ring_of(scene)
+    if ring is None:
+        return None
+    answer = {}
+    for name, law, inertia, whirl in (
+        ("axial", axial_law, ring.mass, 1.0), ("tilt_forward", tilt_law, ring.transverse_inertia, 1.0),
+        ("tilt_backward", tilt_law, ring.transverse_inertia, -1.0),
+    ):  # fmt: skip
+        try:
+            root = found.of_motion(
+                lambda motion, law=law, inertia=inertia, whirl=whirl: _root(law(motion, ring), inertia, whirl)
+            )[0]
+            # Without a whirl that way, overdamped, it is another's.
+            answer[name] = [root.real, root.imag] if name == "axial" or root.imag * whirl > 0.0 else None
+        except ArithmeticError:
+            answer[name] = None
+    fine: Motion = found.motions[1]
+    for name, law, inertia in (("axial", axial_law, ring.mass), ("tilt", tilt_law, ring.transverse_inertia)):
+        answer[f"unstable_{name}"] = unstable_roots(law(fine, ring), inertia)
+    answer["stable"] = not (answer["unstable_axial"] or answer["unstable_tilt"])
+    return answer
+
+
+def _root(law, inertia: float, whirl: float) -> complex:
+    """The root (1/s) next to the motion of the ring without damping."""
+    w = 1.0
+    for _ in range(30):
+        # law + inertia w^2 is the stiffness that the motion meets.
+        stiffness = (law(1j * whirl * w) + inertia * w * w).real
+        w = math.sqrt(max(stiffness, 1e-3 * abs(stiffness)) / inertia)
+    return root_near(law, complex(0.0, whirl * w))
+
+
+# --- what is shown -------------------------------------------------------------------------------------
+
+
+def _found(numbers) -> str:
+    """Stiffness at rest, and whether the ring whirls."""
+    k, at, ring = numbers["stiffness"], numbers["at"], numbers["modes"]
+    said = (
+        f"Aligned at {in_words('clearance', at['clearance'])} the film over grooves has "
+        f"{in_words('axial_stiffness', k[0][0])} axially and {in_words('tilt_stiffness', k[1][1])} in tilt"
+    )
+    if ring is None:
+        return f"{said}."
+    return f"{said}; the ring on it {'is stable' if ring['stable'] else 'whirls or hammers by itself'}."
+
+
+def _notes(numbers) -> list[str]:
+    """The error, the pumping, negative damping."""
+    worst = max(numbers["error"].values())
+    notes = [f"Extrapolated over two meshes, the finer of which errs by {in_words('share', worst, digits=2)} at most."]
+    if numbers["pumping"]:
+        notes.append(f"The grooves pump {numbers['pumping']}.")
+    swept = numbers["against_frequency"]
+    for name, k in (("axial", 0), ("tilt", 1)):
+        negative = [w for w, d in zip(swept["frequency"], swept["damping"], strict=True) if d[k][k] < 0.0]
+        if negative:
+            ends = " to ".join(in_words("frequency", w) for w in (negative[0], negative[-1]))
+            notes.append(f"The film's {name} damping is negative at {len(negative)} of {len(swept['frequency'])} "
+                         f"frequencies, {ends}: grooves store gas.")  # fmt: skip
+    if numbers["modes"] is None:
+        notes.append("Two rings float, or one without inertia: no roots.")
+    return notes
+
+
+def _tables(numbers) -> list[Table]:
+    """The film, its matrices over frequency, and the roots of the ring."""
+    columns = [("clearance", "clearance"), ("force", "film force"), ("leakage", "leakage"), ("torque", "torque"),
+               ("pressure", "least pressure")]  # fmt: skip
+    row = [numbers["at"]["clearance"], *(numbers[n] for n in ("film_force", "leakage", "torque", "least_pressure"))]
+    found = [Table("film", columns, [row])]
+    swept = numbers["against_frequency"]
+    columns = [("frequency", "frequency"), ("axial_stiffness", "axial k"), ("axial_damping", "d"),
+               ("tilt_stiffness", "tilt k"), ("tilt_stiffness", "cross k"), ("tilt_damping", "d")]  # fmt: skip
+    rows = [[w, k[0][0], d[0][0], k[1][1], k[1][2], d[1][1]]
+            for w, k, d in zip(swept["frequency"], swept["stiffness"], swept["damping"], strict=True)]  # fmt: skip
+    found.append(Table("matrices", columns, rows))
+    if numbers["modes"] is not None:
+        roots = [(name, numbers["modes"][name]) for name in ("axial", "tilt_forward", "tilt_backward")]
+        rows = [[name.replace("_", " "), *(root or (None, None))] for name, root in roots]
+        found.append(Table("roots", [("1", "motion"), ("1/s", "growth rate"), ("frequency", "whirl")], rows))
+    return found
+
+
+def _panels(numbers) -> list[Panel]:
+    """Stiffness and damping over the frequency."""
+    swept = numbers["against_frequency"]
+    x, panels = swept["frequency"], []
+    for matrix, quantities in (("stiffness", ("axial_stiffness", "tilt_stiffness")),
+                               ("damping", ("axial_damping", "tilt_damping"))):  # fmt: skip
+        for k, quantity in enumerate(quantities):
+            lines = [Series("line", x, [m[k][k] for m in swept[matrix]], label="direct" if k else "", style="film")]
+            if k:
+                lines.append(Series("line", x, [m[1][2] for m in swept[matrix]], label="cross", style="bad"))
+            title = f"{'Tilt' if k else 'Axial'} {matrix}"
+            panels.append(Panel(title, Axis("frequency", "frequency of the motion"), Axis(quantity), lines,
+                                [Level(0.0, style="black")]))  # fmt: skip
+    return panels
