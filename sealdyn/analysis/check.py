@@ -14,10 +14,9 @@ from ..radial_seals.followers import closed_form_sentences
 from ..scenario.errors import ScenarioError
 from ..scenario.reader import Scenario, read_scenario, with_values
 from ..scenario.shipped import shipped_paths
-from ..scene.contact import waves_of
+from ..scene.patterns import faces_tilt, waves_of
 from ..scene.radial import RadialScene
 from ..scene.scene import SceneError
-from ..scene.symmetry import faces_tilt
 from ..simulation.batch import simulate_many
 from ..simulation.film_error import reynolds_comparison
 from ..simulation.heat import heat_cautions, heat_of

@@ -16,8 +16,8 @@ from ..dynamics.model import Model
 from ..numerics.piecewise_linear import initially, points
 from ..scenario.reader import Scenario
 from ..scene.application import Application
-from ..scene.contact import HIGHEST_ORDER
 from ..scene.gas import viscosity_of
+from ..scene.patterns import HIGHEST_ORDER
 from ..simulation.result import plain
 from .seal_figures import (
     Finding,

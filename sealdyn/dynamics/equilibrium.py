@@ -15,8 +15,9 @@ from ..faces.geometry import (
 )
 from ..numerics.piecewise_linear import PiecewiseLinear, initially
 from ..quantities import resolved
-from ..scene.contact import contact_thresholds, waves_of
+from ..scene.contact import contact_thresholds
 from ..scene.film import aligned_gaps, coned
+from ..scene.patterns import waves_of
 from ..scene.scene import Scene, SceneError
 from .imposed_motion import set_conditions
 from .intervals import Interval, constant_and_slope, spins

@@ -30,8 +30,9 @@ from ..faces.geometry import (
 )
 from ..films import film_named, film_of
 from ..numerics.piecewise_linear import initially
-from ..scene.contact import contact_thresholds, grooves_of, waves_of
+from ..scene.contact import contact_thresholds
 from ..scene.film import Coefficients, aligned_gaps, cells_of, coned
+from ..scene.patterns import grooves_of, waves_of
 from ..scene.scene import SceneError
 from .condensation import NOISE, FilmDerivatives, LinearFilm, Slopes, film_slopes, linearise
 from .equilibrium import settle
@@ -279,8 +280,7 @@ def opening_law(scene, film=None):
 
 def opening_parts(scene, film=None):
     """Function `forces(clearance, p_i, p_o)` (N, N): opening force of the film, with the floor of rough faces, and of
-    the asperities that touch, of a scene's aligned faces at rest; clearance in m, pressures in Pa.  The scene names its
-    film, unless a `film` is given."""
+    touching asperities, of aligned faces at rest (clearance in m, pressures in Pa); by a `film`, or the scene's own."""
     if grooves_of(scene)[1]:
         from ..films._grooved.aligned import OpeningForce
 

@@ -6,8 +6,8 @@ import numpy as np
 
 from ..faces.film_thickness import h_min
 from ..faces.geometry import COLLAPSE, DZ, FORCE, GX, GY
-from ..scene.contact import waves_of
 from ..scene.film import follows_speed
+from ..scene.patterns import waves_of
 from ..scene.rings import ROTOR, STATOR
 from ..scene.scene import SceneError
 from .equilibrium import axial_shift

@@ -5,11 +5,10 @@ import math
 import numpy as np
 
 from ..numerics.piecewise_linear import PiecewiseLinear
-from ..scene.contact import waves_of
 from ..scene.film import follows_speed
+from ..scene.patterns import alike_sectors, face_orders, faces_tilt, waves_of
 from ..scene.rings import RING_NAMES, ROTOR, STATOR
 from ..scene.sweep import largest_amplitude, tilts
-from ..scene.symmetry import alike_sectors, face_orders, faces_tilt
 from . import equations
 from .imposed_motion import AXIAL, fluid_conditions, harmonics_of_segment
 from .intervals import largest_value

@@ -38,9 +38,9 @@ from ..faces.geometry import (
     TORQUE,
 )
 from ..numerics.piecewise_linear import initially, shifted
-from ..scene.contact import waves_of
 from ..scene.film import coned
 from ..scene.liquid import in_numbers, liquid_of
+from ..scene.patterns import waves_of
 from ..scene.scene import Closing, SceneError
 from ..status import Status
 from .equilibrium import closing_law, crossing, equilibria

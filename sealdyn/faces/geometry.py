@@ -17,8 +17,8 @@ import numpy as np
 
 from ..numerics.kernel import inner_kernel
 from ..numerics.piecewise_linear import initially
-from ..scene.contact import MOST_WAVES
 from ..scene.film import MOST_NODES
+from ..scene.patterns import MOST_WAVES
 
 # Slots of the gap-state array `s`, which the scene fills and the film kernels read and complete.
 DZ, GX, GY, DZ_RATE, GX_RATE, GY_RATE = range(6)

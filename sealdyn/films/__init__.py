@@ -10,8 +10,8 @@ import pkgutil
 from functools import cache
 
 from ..numerics.piecewise_linear import points
-from ..scene.contact import SERVED, grooves_of, turning_waves, waves_of, waviness_errors
 from ..scene.film import profile_errors
+from ..scene.patterns import SERVED, grooves_of, turning_waves, waves_of, waviness_errors
 from ..scene.scene import SceneError
 from ._contract import Film, Offer
 

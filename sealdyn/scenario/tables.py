@@ -15,8 +15,8 @@ from ..films import all_film_names, film_of
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene.application import Application, RadialApplication, application_errors
 from ..scene.checks import scene_errors
-from ..scene.contact import grooves_of
 from ..scene.excitation import Motion
+from ..scene.patterns import grooves_of
 from ..scene.radial import RADIAL, RadialScene, radial_errors
 from ..scene.rings import INERTIAL, RING_NAMES, with_inertia
 from ..scene.scene import Scene, SceneError

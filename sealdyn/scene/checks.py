@@ -5,19 +5,12 @@ import math
 
 from ..numerics.piecewise_linear import PiecewiseLinear, initially, points
 from ..units import Temperature, Viscosity
-from .contact import (
-    contact_errors,
-    contact_thresholds,
-    film_in_words,
-    grooves_errors,
-    limit_in_words,
-    waves_of,
-    waviness_errors,
-)
+from .contact import contact_errors, contact_thresholds, film_in_words, limit_in_words
 from .excitation import motion_errors, random_errors
 from .film import aligned_gaps, coned, follows_speed, pads_errors, profile_errors, reynolds_errors
 from .gas import GASES, gas_of
 from .liquid import heat_errors, liquid_errors
+from .patterns import grooves_errors, waves_of, waviness_errors
 from .rings import body_errors, elastic_errors, secondary_seal_errors
 from .scene import SceneError
 from .sweep import sweep_errors

@@ -29,8 +29,8 @@ from ..units import (
     Varying,
     Velocity,
 )
-from .contact import Grooves, Waviness
 from .liquid import ThermalConductivity
+from .patterns import Grooves, Waviness
 
 Expansion = Annotated[float, Quantity("thermal expansion", "1/K", '"4.5e-6 1/K"', (), 0, True,
     usual=Usual(1e-7, 1e-3, "um/(m*K)"))]  # fmt: skip

@@ -32,8 +32,8 @@ from ..faces.geometry import (
 )
 from ..films import film_named, limits
 from ..numerics.piecewise_linear import initially
-from ..scene.contact import waves_of
 from ..scene.film import Reynolds
+from ..scene.patterns import waves_of
 from ..scene.variants import seals_that_stick
 from .verification_run import ErrorScales
 

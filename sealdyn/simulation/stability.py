@@ -8,7 +8,7 @@ from ..dynamics import modes, stability_thresholds
 from ..dynamics.intervals import constant_and_slope
 from ..dynamics.linearisation import moves_with_speed, whirl_over_speed
 from ..dynamics.stability_thresholds import neutral_speeds
-from ..scene.contact import waves_of
+from ..scene.patterns import waves_of
 from ..scene.rings import ROTOR, STATOR
 from ..scene.scene import SceneError
 

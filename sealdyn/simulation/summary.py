@@ -15,8 +15,8 @@ from ..dynamics.modes import steady_extremes
 from ..dynamics.run_state import Caution, Concern
 from ..faces.geometry import CONTACT_TORQUE, FLOW_INNER, INNER_PRESSURE, OUTER_PRESSURE, SPIN_DIFFERENCE, TORQUE, TOUCH
 from ..numerics.piecewise_linear import PiecewiseLinear
-from ..scene.contact import waves_of
 from ..scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE, density_of, gas_of
+from ..scene.patterns import waves_of
 from ..scene.radial import RadialScene
 from ..scene.rings import RING_NAMES, ROTOR, SMALL_TILT, STATOR
 from ..solvers.contract import Status

@@ -14,8 +14,8 @@ from ..films._grooved.motion import Motion, Ring, axial_law, root_near, tilt_law
 from ..numerics.piecewise_linear import initially
 from ..quantities import in_words
 from ..scenario.settings import values_in_si
-from ..scene.contact import grooves_of
 from ..scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE, density_of
+from ..scene.patterns import grooves_of
 from ..scene.scene import SceneError
 from ..scene.variants import frozen_at_start
 

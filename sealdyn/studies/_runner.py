@@ -25,10 +25,9 @@ from ..scenario.overrides import radius_key
 from ..scenario.reader import Scenario
 from ..scenario.settings import bare_settings, study_settings, without, written_settings
 from ..scene import variants
-from ..scene.contact import SERVED, grooves_of, waves_of
+from ..scene.patterns import SERVED, face_orders, faces_tilt, grooves_of, waves_of
 from ..scene.radial import RadialScene
 from ..scene.scene import SceneError
-from ..scene.symmetry import face_orders, faces_tilt
 from ..simulation.plausibility import declared, kind_of, unusual, usual_of
 from ..status import Status
 from ..units import printable

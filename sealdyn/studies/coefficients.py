@@ -13,7 +13,7 @@ from ..dynamics.model import Model
 from ..faces.film_thickness import h_min
 from ..quantities import in_words
 from ..scenario.settings import Words, values_in_si
-from ..scene.contact import grooves_of, waves_of
+from ..scene.patterns import grooves_of, waves_of
 from ..scene.scene import SceneError
 from ..scene.variants import frozen_at_start, tilting, with_values
 from ..simulation.film_error import steady_tilt

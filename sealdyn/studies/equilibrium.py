@@ -23,9 +23,9 @@ from ..dynamics.warm_state import at_work, unheated, warming
 from ..faces.geometry import CAVITATED, CONTACT_PRESSURE, CONTACT_TORQUE, FLOW_INNER, SPIN_DIFFERENCE, TORQUE, WEAR
 from ..numerics.piecewise_linear import initially
 from ..quantities import in_words, resolved
-from ..scene.contact import grooves_of, waves_of
 from ..scene.film import coned
 from ..scene.gas import density_of
+from ..scene.patterns import grooves_of, waves_of
 from ..scene.scene import Closing, SceneError
 from ..scene.variants import frozen_at_start
 from ..simulation.heat import heat_of, limits_of, limits_said

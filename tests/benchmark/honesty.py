@@ -49,7 +49,7 @@ from scenes import prepared, set_start
 
 from sealdyn.report.charts import palette
 from sealdyn.scenario.tables import Run
-from sealdyn.scene.symmetry import tilt_is_imposed
+from sealdyn.scene.patterns import tilt_is_imposed
 from sealdyn.simulation.certificate import certificate, first_steps, judgement, next_plan
 from sealdyn.simulation.selection import Plan, choose_method, select_film
 from sealdyn.simulation.verification_run import QUANTITIES, Comparison, ErrorScales, clip_jumps

@@ -19,8 +19,8 @@ from sealdyn.films.reynolds.film import FILM as REYNOLDS_FILM
 from sealdyn.films.reynolds.mesh import ANGLE_STEP, AREA, SECTORS, table
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import read_scenario
-from sealdyn.scene.contact import Waviness
 from sealdyn.scene.film import Film, Reynolds
+from sealdyn.scene.patterns import Waviness
 from sealdyn.scene.scene import SceneError
 from sealdyn.simulation.selection import check_method, choose_method
 from sealdyn.simulation.verification_run import ProgressSink

@@ -17,10 +17,11 @@ from scenes import fmsr
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scenario.reader import Scenario
 from sealdyn.scenario.tables import Run
-from sealdyn.scene.contact import Contact, Waviness
+from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import Shaft
 from sealdyn.scene.film import Pads, Reynolds
 from sealdyn.scene.gas import gas_of
+from sealdyn.scene.patterns import Waviness
 from sealdyn.scene.rings import Rotor
 from sealdyn.scene.scene import Initial, RingStart, Scene
 from sealdyn.simulation.simulate import simulate_in_memory

@@ -11,8 +11,8 @@ from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.run_state import RunState
 from sealdyn.faces import geometry
 from sealdyn.films import film_of
-from sealdyn.scene.contact import Waviness
 from sealdyn.scene.excitation import Shaft
+from sealdyn.scene.patterns import Waviness
 from sealdyn.scene.rings import Rotor, Stator, Support
 from sealdyn.scene.scene import Scene, SceneError
 from sealdyn.simulation.stability import stability

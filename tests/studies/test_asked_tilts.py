@@ -6,8 +6,8 @@ from dataclasses import replace
 import pytest
 from patterned_faces import THREE, gas, liquid, pads, scenario, seal
 
-from sealdyn.scene.contact import Waviness
 from sealdyn.scene.film import Coefficients, Reynolds
+from sealdyn.scene.patterns import Waviness
 from sealdyn.studies import coefficients, pressure
 
 OWN = Coefficients(tilt_stiffness=1e3, tilt_damping=1.0, axial_stiffness=1e7, axial_damping=1e3)

@@ -13,8 +13,8 @@ from scenes import film as table
 import sealdyn.films
 from sealdyn.films import all_film_names, film_named, film_of
 from sealdyn.films._contract import Field, Film, Offer
-from sealdyn.scene.contact import Waviness
 from sealdyn.scene.film import Pads
+from sealdyn.scene.patterns import Waviness
 from sealdyn.scene.scene import SceneError
 
 FOLDER = Path(sealdyn.films.__file__).parent

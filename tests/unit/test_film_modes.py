@@ -13,7 +13,7 @@ from sealdyn.dynamics.film_modes import ReducedFilm
 from sealdyn.dynamics.modes import LinearScene, RingNumbers
 from sealdyn.faces.waviness import lay_waves
 from sealdyn.films.gas_reynolds import film as gas
-from sealdyn.scene.contact import Waviness
+from sealdyn.scene.patterns import Waviness
 
 N = 40
 STATOR = RingNumbers(1.0, True, 1.0, 8e-4, 0.0, 5e5, 300.0, 400.0, 0.24, 0.0)

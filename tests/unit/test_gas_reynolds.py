@@ -13,9 +13,9 @@ from sealdyn.dynamics.condensation import FilmDerivatives
 from sealdyn.faces import geometry, waviness
 from sealdyn.films import film_of
 from sealdyn.films.gas_reynolds import film as gas
-from sealdyn.scene.contact import Waviness
 from sealdyn.scene.excitation import Shaft
 from sealdyn.scene.film import Profile
+from sealdyn.scene.patterns import Waviness
 from sealdyn.scene.rings import Rotor, Stator, Support
 from sealdyn.scene.scene import Scene, SceneError
 

@@ -15,9 +15,9 @@ from sealdyn.films import film_of
 from sealdyn.films._grooved.aligned import OpeningForce, aligned_film
 from sealdyn.films._grooved.motion import tilt_law, unstable_roots
 from sealdyn.scene.checks import scene_errors
-from sealdyn.scene.contact import Grooves
 from sealdyn.scene.excitation import Shaft
 from sealdyn.scene.film import Film
+from sealdyn.scene.patterns import Grooves
 from sealdyn.scene.rings import Rotor, Stator, Support
 from sealdyn.scene.scene import Closing, Scene, SceneError
 from sealdyn.scene.variants import counterpart

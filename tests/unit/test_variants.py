@@ -11,8 +11,9 @@ from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scenario import reader
 from sealdyn.scenario.overrides import override_of
 from sealdyn.scenario.reader import ScenarioError, parse_scenario
-from sealdyn.scene.contact import Contact, Waviness
+from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import AxialVibration, Housing
+from sealdyn.scene.patterns import Waviness
 from sealdyn.scene.rings import AxialRunout, Support
 from sealdyn.scene.scene import SceneError
 from sealdyn.scene.variants import counterpart, part, tables_at_end, with_values, without

@@ -10,9 +10,10 @@ from dataclasses import dataclass
 
 from ...dynamics.interface import Interface, flow_at_rest, rest_state
 from ...faces.geometry import CONTACT_TORQUE, FLOW_INNER, FORCE, TORQUE
-from ...scene.contact import HALF_HEIGHT, Contact, Waviness
+from ...scene.contact import HALF_HEIGHT, Contact
 from ...scene.excitation import Shaft
 from ...scene.film import Film, Reynolds
+from ...scene.patterns import Waviness
 from ...scene.rings import Stator, Support
 from ...scene.scene import Closing, Scene
 

@@ -4,8 +4,8 @@ import math
 
 from scipy.optimize import brentq
 
-from ...scene.contact import Waviness
 from ...scene.film import Film, Reynolds
+from ...scene.patterns import Waviness
 from ..truncated_heights import load_shares, plateaus
 from .lebeck_1979 import BALANCE, INNER, OUTER, SPEED, TOLERANCE, UNEXPLAINED, VISCOSITY
 

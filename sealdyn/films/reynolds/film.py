@@ -28,10 +28,9 @@ from ...faces.geometry import (
 from ...faces.waviness import lay_waves
 from ...numerics.kernel import outer_kernel, value_kernel
 from ...numerics.piecewise_linear import initially
-from ...scene.contact import waves_of
 from ...scene.film import AROUND, PER_WAVE, Reynolds, cells_of
+from ...scene.patterns import alike_sectors, waves_of
 from ...scene.scene import SceneError
-from ...scene.symmetry import alike_sectors
 from .._contract import FILL, PRESSURE, Film, FilmUnknowns, force_over_clearance
 from . import OFFER
 from .balance import driest, jacobian, pattern, residual

@@ -23,8 +23,9 @@ from ...dynamics.modes import Harmonic, steady_extremes, verdict
 from ...dynamics.run_state import RunState
 from ...faces.geometry import DZ, GX, GY
 from ...quantities import in_words
-from ...scene.contact import touch_height, waves_of
+from ...scene.contact import touch_height
 from ...scene.excitation import AngularVibration, AxialVibration, Housing
+from ...scene.patterns import waves_of
 from ...scene.rings import STATOR
 from ...scene.scene import Initial, Scene, SceneError
 from ...scene.variants import frozen_at_start, unforced

@@ -9,8 +9,8 @@ import numpy as np
 from ...dynamics import modes
 from ...films import film_named, film_names, film_of
 from ...scenario.reader import with_values
-from ...scene.contact import waves_of
 from ...scene.film import Coefficients
+from ...scene.patterns import waves_of
 from ...simulation.selection import prepare_run
 from ...solvers.collocation import collocation
 from ...solvers.contract import tolerance_for

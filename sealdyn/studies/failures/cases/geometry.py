@@ -29,8 +29,8 @@ from ....films.radial import film as radial
 from ....films.radial import floored
 from ....films.radial.cavitated_line import cavitated_line
 from ....quantities import in_words
-from ....scene.contact import waves_of
 from ....scene.gas import viscosity_of
+from ....scene.patterns import waves_of
 from . import cruise_dam, integrated, row, run_from
 
 # --- degenerate geometry ---

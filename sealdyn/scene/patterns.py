@@ -1,0 +1,227 @@
+"""What faces have around the shaft: waves, `[[stator.waviness]]` and `[[rotor.waviness]]`, and spiral and T-grooves,
+`[[rotor.grooves]]` and `[[stator.grooves]]`; and how often a scene repeats itself there, and with that whether aligned
+rings stay so.
+
+Whatever differs around the circle has an order, how often it repeats itself there: a wave the number of its waves, pads
+their count, a tilt one.  Pressure is no linear function of the film thickness, so that parts of orders n and m press
+with n - m, too (cos 2a cos 3a holds cos a): all of them together repeat themselves as often as their orders have in
+common, the greatest common divisor, and a moment is what repeats itself once.
+**Source** Curie (1894), J. Phys. Theor. Appl. 3, 393: effects have at least the symmetry of their causes.
+**Valid** the motion that keeps the symmetry; whether a tilt beside it dies out is a question for the modes.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+from ..numerics.piecewise_linear import points
+from ..units import Angle, Height, Radius
+
+# Most waves of both faces together: kernels keep room for them.
+MOST_WAVES = 16
+# Finer than a hundredth of the circle a surface is rough or grooved, not wavy.
+HIGHEST_ORDER = 100
+
+
+@dataclass(frozen=True)
+class Waviness:
+    """One wave of a ring's face, `amplitude cos(order (theta - ring angle) + phase)` of its height, counted along the
+    shaft: on the stator it opens the gap, on the rotor it closes it."""
+
+    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
+
+    order: int
+    """Waves to the circle, 2 to 100 (order 1 is a tilt)."""
+    amplitude: Height
+    """Half the height from trough to crest."""
+    phase: Angle = 0.0
+    """Of the wave at the angle zero of its ring."""
+
+
+def waves_of(scene) -> list[Waviness]:
+    """Waves (Waviness) of both faces of a scene, the stator's first."""
+    return [*scene.stator.waviness, *scene.rotor.waviness]
+
+
+def turning_waves(scene) -> str:
+    """Key of the waves of a face that ever turns, "" if all stand still."""
+    for name, ring, speed in (("stator", scene.stator, scene.stator.speed), ("rotor", scene.rotor, scene.shaft.speed)):
+        if any(wave.amplitude for wave in ring.waviness) and any(points(speed)):
+            return f"{name}.waviness"
+    return ""
+
+
+def waviness_errors(scene) -> list[tuple[str, str, str]]:
+    """What the wavy faces of a scene cannot have: (key, found, expected)."""
+    bad = []
+    for name, ring in (("stator", scene.stator), ("rotor", scene.rotor)):
+        for n, wave in enumerate(ring.waviness):
+            key = f"{name}.waviness.{n}"
+            if not 2 <= wave.order <= HIGHEST_ORDER or wave.order != int(wave.order):
+                whole = f"a whole number from 2 (1 is a tilt, 0 a clearance: give them as such) to {HIGHEST_ORDER}"
+                bad.append((f"{key}.order", f"{wave.order}", whole))
+            if not 0.0 <= wave.amplitude < math.inf:
+                bad.append((f"{key}.amplitude", f"{wave.amplitude:g} m", "a finite length >= 0"))
+            if not math.isfinite(wave.phase):
+                bad.append((f"{key}.phase", f"{wave.phase:g} rad", "a finite angle"))
+    waves = waves_of(scene)
+    if len(waves) > MOST_WAVES:
+        blame = "rotor.waviness" if scene.rotor.waviness else "stator.waviness"
+        bad.append((blame, f"{len(waves)} waves in all", f"at most {MOST_WAVES}"))
+    if waves and scene.contact and scene.film.model != "reynolds":
+        expected = 'film.model = "reynolds", or no such table: other films end a run where wavy faces meet'
+        bad.append(("contact", "a table beside wavy faces", expected))
+    return bad
+
+
+# What serves a scene with grooves so far.
+SERVED = "studies equilibrium, load-support, stribeck and coefficients: nothing else reckons with grooves yet"
+
+
+@dataclass(frozen=True)
+class Grooves:
+    """One row of equal grooves with sharp edges.
+
+    Spiral: r = inner_radius exp(theta tan(angle)) along an edge, straight in (ln r, theta).  Tee: arms between the two
+    radii over `share` of the pitch, and a stem outwards from their middle, with radial sides."""
+
+    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
+
+    count: int
+    """Grooves to the circle."""
+    depth: Height
+    """By which the film is thicker in them."""
+    inner_radius: Radius
+    """Where they begin; that of the face where they open there."""
+    outer_radius: Radius
+    """Where they end, or the arms of a tee."""
+    share: float
+    """Share of the pitch that is groove, or arms."""
+    shape: Literal["spiral", "tee"] = "spiral"
+    """Spiral grooves, or arms with a stem."""
+    angle: Angle | None = None
+    """Of a spiral to the circle: positive where the groove's radius grows with theta, the sense of a positive shaft
+    speed."""
+    stem_outer_radius: Radius | None = None
+    """Of a tee: where its stem ends."""
+    stem_share: float | None = None
+    """Of a tee: share of the pitch that is stem."""
+    phase: Angle = 0.0
+    """Angle of the middle of the first groove at its inner radius, at the angle zero of its ring."""
+
+
+def grooves_of(scene) -> tuple[str, tuple[Grooves, ...]]:
+    """The ring that has grooves, "rotor" or "stator", and them; "" and none where neither has any."""
+    for name in ("rotor", "stator"):
+        if getattr(scene, name).grooves:
+            return name, tuple(getattr(scene, name).grooves)
+    return "", ()
+
+
+def grooves_errors(scene) -> list[tuple[str, str, str]]:
+    """What a scene with grooves cannot have: (key, found, expected)."""
+    name, grooves = grooves_of(scene)
+    if not grooves:
+        return []
+    key = f"{name}.grooves"
+    if len(grooves) > 1 or (name == "rotor" and scene.stator.grooves):
+        return [(key, "more than one row of grooves", "one row, in one of the faces")]
+    return [(f"{key}.0.{part}", *words) for part, *words in _shape_errors(grooves[0], scene.film)] or [
+        (part, found, f"{wanted} beside {key}") for part, found, wanted in _beside_errors(scene)
+    ]
+
+
+def _shape_errors(one: Grooves, film) -> list[tuple[str, str, str]]:
+    bad, tee = [], one.shape == "tee"
+    if one.count < 1:
+        bad.append(("count", f"{one.count}", "a whole number from 1"))
+    if not 0.0 <= one.depth < math.inf:
+        bad.append(("depth", f"{one.depth:g} m", "a finite depth >= 0, by which the film is thicker in a groove"))
+    if not film.inner_radius <= one.inner_radius < one.outer_radius <= film.outer_radius:
+        found = f"{one.inner_radius:g} to {one.outer_radius:g} m"
+        expected = f"radii that increase, between {film.inner_radius:g} and {film.outer_radius:g} m, those of the face"
+        bad.append(("inner_radius", found, expected))
+    if not 0.0 < one.share < 1.0:
+        bad.append(("share", f"{one.share:g}", "a share of the pitch above 0 and below 1"))
+    for part in ("stem_outer_radius", "stem_share"):
+        if (getattr(one, part) is not None) != tee:
+            bad.append((part, "nothing" if tee else "a value", "a value" if tee else 'nothing, or shape = "tee"'))
+    if tee and not bad:
+        if not one.outer_radius < one.stem_outer_radius <= film.outer_radius:
+            expected = f"more than outer_radius = {one.outer_radius:g} m, at most that of the face"
+            bad.append(("stem_outer_radius", f"{one.stem_outer_radius:g} m", expected))
+        if not 0.0 < one.stem_share < one.share:
+            bad.append(("stem_share", f"{one.stem_share:g}", f"above 0 and below share = {one.share:g}, the arms"))
+    if tee and one.angle is not None:
+        bad.append(("angle", "a value", 'nothing: the sides of shape = "tee" are radial'))
+    if not tee and not (one.angle is not None and 0.0 < abs(one.angle) < 0.5 * math.pi):
+        found = "nothing" if one.angle is None else f"{one.angle:g} rad"
+        expected = (
+            "the groove's angle to the circle, between 0 and 90 deg, positive where its radius grows with theta, "
+            "negative the other way round (papers that say 165 deg mean -15 deg, others count from the radius)"
+        )
+        bad.append(("angle", found, expected))
+    return bad
+
+
+def _beside_errors(scene) -> list[tuple[str, str, str]]:
+    """What no film over grooves reckons with yet."""
+    film, gas = scene.film, scene.film.gas is not None
+    models = ("auto", "gas_reynolds" if gas else "reynolds")
+    has = {
+        "film.profile": film.profile, "film.pads": film.pads, "film.inertia": film.inertia, "film.heat": film.heat,
+        "film.cavitation_pressure": film.cavitation_pressure, "contact": scene.contact,
+        "stator.elastic": scene.stator.elastic, "stator.secondary_seal": scene.stator.secondary_seal,
+        "rotor.secondary_seal": scene.rotor.secondary_seal, "stator.waviness": waves_of(scene),
+    }  # fmt: skip
+    bad = [
+        (key, "a value", "nothing")
+        for key, value in has.items()
+        if not (value is None or value is False or value == [])
+    ]
+    if film.model not in models:
+        bad.append(("film.model", f'"{film.model}"', f'"{models[0]}" or "{models[1]}"'))
+    for key, only in (("geometry", "cylindrical"), ("tilt_radius", "local")):
+        if getattr(film, key) != only:
+            bad.append((f"film.{key}", f'"{getattr(film, key)}"', f'"{only}"'))
+    return bad
+
+
+# --- symmetry ----------------------------------------------------------------------------------------------
+
+
+def alike_sectors(scene, faces_press: bool = True) -> int:
+    """Into how many sectors that are alike at any time a scene falls: 1 where a ring tilts, 0 (any number) where
+    nothing differs around the circle; `faces_press`: whether the pressure feels waves and pads."""
+    tilt = (1,) if tilt_is_imposed(scene) or tilt_is_given(scene) else ()
+    return math.gcd(*(face_orders(scene) if faces_press else ()), *tilt)
+
+
+def face_orders(scene) -> list[int]:
+    """Orders of what the faces of a scene have around the circle: waves, pads and grooves."""
+    waves = {wave.order for wave in waves_of(scene) if wave.amplitude}
+    return sorted(waves | {row.count for row in (*scene.film.pads, *grooves_of(scene)[1]) if row.depth})
+
+
+def faces_tilt(scene) -> bool:
+    """Whether the faces of a scene, aligned, press with a moment by their waves and pads."""
+    return math.gcd(*face_orders(scene)) == 1
+
+
+def tilt_is_imposed(scene) -> bool:
+    """Whether anything but its own start and its faces ever tilts a ring."""
+    rotor, stator = scene.rotor, scene.stator
+    tilts = [rotor.misalignment if rotor.support else rotor.runout, stator.misalignment]
+    tilts += [whirl.angle for whirl in scene.shaft.whirl]
+    vibrations = (*scene.housing.angular_tones, *scene.housing.angular_sweep)
+    shaken = any(vibration.displacement or vibration.acceleration for vibration in vibrations)
+    sampled = (m for m in (scene.housing.motion, scene.shaft.motion) if m)
+    shaken = shaken or any(any(m.tilt_x or ()) or any(m.tilt_y or ()) for m in sampled)
+    return shaken or any(any(points(tilt)) for tilt in tilts)
+
+
+def tilt_is_given(scene) -> bool:
+    """Whether a floating ring starts with a tilt, or with a rate of it, by [initial]."""
+    starts = ((scene.rotor, scene.initial.rotor), (scene.stator, scene.initial.stator))
+    moved = [start for ring, start in starts if ring.support is not None]
+    return any(v for s in moved for v in (s.tilt_x, s.tilt_y, s.tilt_x_rate, s.tilt_y_rate))
