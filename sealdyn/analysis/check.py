@@ -8,19 +8,25 @@ from dataclasses import replace
 from pathlib import Path
 from time import monotonic
 
+from ..closed_form.stability import couette_reynolds
+from ..dynamics.equilibrium import settle
+from ..dynamics.interface import opening_law
+from ..faces.pattern import pumps
 from ..films import film_named, film_names, film_of
 from ..kernel_cache import compiling, kept_kernels, kernel_folder
 from ..radial_seals.followers import closed_form_sentences
 from ..scenario.errors import ScenarioError
 from ..scenario.reader import Scenario, read_scenario, with_values
 from ..scenario.shipped import shipped_paths
-from ..scene.patterns import faces_tilt, waves_of
+from ..scene.gas import highest_density
+from ..scene.patterns import faces_tilt, grooves_of, waves_of
 from ..scene.radial import RadialScene
 from ..scene.scene import SceneError
+from ..scene.variants import frozen_at_start
 from ..simulation.batch import simulate_many
 from ..simulation.film_error import reynolds_comparison
 from ..simulation.heat import heat_cautions, heat_of
-from ..simulation.plausibility import scene_cautions, size_of, unit_warnings
+from ..simulation.plausibility import LAMINAR, scene_cautions, size_of, unit_warnings
 from ..simulation.result import plain
 from ..simulation.selection import prepare_run
 from ..simulation.simulate import simulate
@@ -39,6 +45,8 @@ def checked(scenario: Scenario) -> dict:
     """The answer of `sealdyn check --json`, SI.  Raises SceneError and ArchiveError of a run that cannot be made
     ready."""
     found = {"status": Status.OK, "message": "the scene is possible", "scene": scenario.resolved()}
+    if not isinstance(scenario.scene, RadialScene) and grooves_of(scenario.scene)[1]:
+        return found | _over_grooves(scenario)
     run, plan = prepare_run(scenario)
     size = size_of(scenario, plan.count)
     if isinstance(scenario.scene, RadialScene):
@@ -62,6 +70,32 @@ def checked(scenario: Scenario) -> dict:
         "design_rules": design_rules.findings(scenario, run.model),
         "beside_reynolds": reynolds_comparison(run),
         "size": {key: getattr(size, key) for key in ("turns", "rows", "bytes", "seconds")},
+    }
+
+
+def _over_grooves(scenario: Scenario) -> dict:
+    """What is known of a scene with grooves, over which no run moves a ring yet."""
+    # Loaded for grooves only.
+    from ..films._grooved.aligned import aligned_film
+
+    scene = frozen_at_start(scenario.scene)
+    clearance, _, equilibria, _ = settle(scene, opening_law(scene))
+    film, (face, (one,)) = aligned_film(scene, clearance), grooves_of(scene)
+    condition, deep = film.fine.film.conditions, float(film.fine.film.h.max())
+    sliding = abs(condition.relative_speed) * one.outer_radius
+    reynolds = couette_reynolds(highest_density(scene.film), condition.viscosity, sliding, deep)
+    rough = [f"perhaps turbulent: Couette Reynolds number {reynolds:.0f} in the grooves"] if reynolds > LAMINAR else []
+    return {
+        "clearance": clearance,
+        "equilibria": [vars(e) for e in equilibria],
+        "grooves": {
+            "face": face,
+            "pumping": pumps(one.angle, condition.entrainment) if one.shape == "spiral" else None,
+            "depth_over_film": one.depth / clearance,
+            "reynolds_number": reynolds,
+        },
+        "warnings": unit_warnings(scenario) + rough,
+        "design_rules": [],
     }
 
 

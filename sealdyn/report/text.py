@@ -88,6 +88,8 @@ def resolved_lines(found: dict) -> list[str]:
     if found.get("gauge"):
         given = " and ".join(found["gauge"])
         out.append(f"# pressures are absolute: {given}, given as gauge, with the 1.01325 bar of the air")
+    if "grooves" in found:
+        return out + _grooved_lines(found) + [f"# WARNING {warning}" for warning in found["warnings"]]
     model = found["model"]
     if "closed_form" in found:
         out.append(f"# {model['followers']} followers; solver {model['solver']}")
@@ -107,6 +109,19 @@ def resolved_lines(found: dict) -> list[str]:
         out.append(f"# not used: {', '.join(model['unused'])}")
     out += [f"# WARNING {warning}" for warning in found.get("warnings", [])]
     return out + [f"# {line}" for line in _rule_lines(found["design_rules"])]
+
+
+def _grooved_lines(found) -> list[str]:
+    """The aligned film over grooves."""
+    grooves, clearance = found["grooves"], in_words("clearance", found["clearance"])
+    pumped = f", which pump {grooves['pumping']}" if grooves["pumping"] else ""
+    deep = (
+        f"depth {grooves['depth_over_film']:.3g} times that, Couette Reynolds number {grooves['reynolds_number']:.3g}"
+    )
+    return [
+        f"# aligned film over the grooves of the {grooves['face']}{pumped}: {clearance}, {deep}",
+        "# no run moves rings over grooves yet; sealdyn study coefficients has stiffness, damping and roots",
+    ]
 
 
 def _heated_lines(heat) -> list[str]:

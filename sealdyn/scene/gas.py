@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Annotated, Literal
 
-from ..numerics.piecewise_linear import PiecewiseLinear
+from ..numerics.piecewise_linear import PiecewiseLinear, points
 from ..units import DEGREES, SpecificHeat, TemperatureScale, Usual, Viscosity
 
 # Of the properties of a gas, whatever the seal is.
@@ -117,3 +117,13 @@ def density_of(film) -> float:
     conditions (273.15 K, 101325 Pa)."""
     gas = gas_of(film)
     return film.density if gas is None else NORMAL_PRESSURE / (gas.gas_constant * NORMAL_TEMPERATURE)
+
+
+def highest_density(film) -> float:
+    """Density (kg/m^3) of a liquid, or of a gas at its highest pressure and lowest temperature."""
+    gas = gas_of(film)
+    if gas is None:
+        return film.density
+    return max(*points(film.inner_pressure), *points(film.outer_pressure)) / (
+        gas.gas_constant * min(points(film.temperature))
+    )

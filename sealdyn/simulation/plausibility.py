@@ -22,7 +22,7 @@ from ..scenario.reader import Scenario
 from ..scenario.tables import RadialFile, ScenarioFile
 from ..scene.contact import HALF_HEIGHT
 from ..scene.film import Coefficients
-from ..scene.gas import GasDam, density_of, gas_of, viscosity_of
+from ..scene.gas import GasDam, density_of, gas_of, highest_density, viscosity_of
 from ..scene.radial import RadialScene
 from ..scene.scene import SceneError
 from ..scene.variants import part
@@ -98,11 +98,7 @@ def couette_number(model, radius: float, thickness: float) -> float:
     if film.gas is None and not _is_liquid(model):
         return math.nan
     sliding = max(abs(r - s) for r, s in product(points(scene.shaft.speed), points(scene.stator.speed)))
-    density = film.density
-    if film.gas is not None:
-        high = max(*points(film.inner_pressure), *points(film.outer_pressure))
-        density = high / (gas_of(film).gas_constant * min(points(film.temperature)))
-    return couette_reynolds(density, min(points(viscosity_of(film))), sliding * radius, thickness)
+    return couette_reynolds(highest_density(film), min(points(viscosity_of(film))), sliding * radius, thickness)
 
 
 def leakage_numbers(model, leakage: float) -> tuple[float, float]:

@@ -9,11 +9,13 @@ import pytest
 from grooved_faces import AREA, R_I, R_O, ROWS
 
 from sealdyn import read_scenario, run_study
+from sealdyn.analysis.check import checked
 from sealdyn.dynamics.equilibrium import settle
 from sealdyn.dynamics.interface import opening_law
 from sealdyn.films import film_of
 from sealdyn.films._grooved.aligned import OpeningForce, aligned_film
 from sealdyn.films._grooved.motion import tilt_law, unstable_roots
+from sealdyn.report.text import resolved_lines
 from sealdyn.scene.checks import scene_errors
 from sealdyn.scene.excitation import Shaft
 from sealdyn.scene.film import Film
@@ -251,3 +253,13 @@ def test_roots_on_the_right_are_counted(roots, count):
 
     assert unstable_roots(law, 0.3) == count
     assert cmath.isclose(law(roots[0]), 0.0)
+
+
+def test_check_says_how_deep_the_grooves_are_and_which_way_they_pump(scenario):
+    found = checked(scenario)
+    density = 5e5 / (287.05 * 300.0)
+    assert found["grooves"]["reynolds_number"] == pytest.approx(density * 1000.0 * R_O * 9e-6 / 1.8e-5, rel=1e-3)
+    assert (found["grooves"]["pumping"], found["grooves"]["depth_over_film"]) == ("inwards", 2.0)
+    assert not found["warnings"] and "inwards" in " ".join(resolved_lines(found))
+    assert checked(scenario.with_(shaft__speed=-1000.0))["grooves"]["pumping"] == "outwards"
+    assert len(checked(scenario.with_(shaft__speed=20000.0, film__clearance="8 um"))["warnings"]) == 1
