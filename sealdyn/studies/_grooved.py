@@ -10,10 +10,20 @@ from ..dynamics.equilibrium import settle
 from ..dynamics.interface import opening_law
 from ..faces.pattern import pumps
 from ..films._grooved.aligned import AlignedFilm, aligned_film, axial_stiffness
-from ..films._grooved.motion import Motion, Ring, axial_law, root_near, tilt_law, unstable_roots
+from ..films._grooved.motion import (
+    Motion,
+    Ring,
+    axial_law,
+    misalignment_answer,
+    root_near,
+    runout_answer,
+    tilt_law,
+    unstable_roots,
+)
 from ..numerics.piecewise_linear import initially
 from ..quantities import in_words
 from ..scenario.settings import values_in_si
+from ..scene.film import coned
 from ..scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE, density_of
 from ..scene.patterns import grooves_of
 from ..scene.scene import SceneError
@@ -75,6 +85,7 @@ def coefficients_over_grooves(scenario, scene, settings) -> Answer:
         "least_pressure": found.least_pressure,
         "pumping": _pumping(scene, found),
         "modes": modes(scene, found),
+        "tracking": tracking(scene, found, clearance),
     }  # fmt: skip
     numbers["mass_flow"] = numbers["leakage"] * density_of(scene.film)
     if any(values is not None for values in given.values()):
@@ -182,6 +193,31 @@ def _root(law, inertia: float, whirl: float) -> complex:
     return root_near(law, complex(0.0, whirl * w))
 
 
+def tracking(scene, found: AlignedFilm, clearance: float) -> dict | None:
+    """How a stator that floats follows its rotor, by linear theory: relative misalignment (rad) `by_runout` of the
+    rotor, constant on it, `by_misalignment` of the stator, which the rotor passes, and the `largest`, their sum;
+    thinnest film over the lands `h_min` (m), where that is not negative.  None of other arrangements."""
+    ring = ring_of(scene)
+    if ring is None or scene.stator.support is None:
+        return None
+    speed = initially(scene.shaft.speed)
+    runout, misalignment = initially(scene.rotor.runout), initially(scene.stator.misalignment)
+
+    def parts(motion):
+        return np.array([
+            runout_answer(motion, ring, runout, speed) - runout, misalignment_answer(motion, ring, misalignment),
+        ])  # fmt: skip
+
+    by_runout, by_misalignment = np.abs(found.of_motion(parts)[0]).tolist()
+    film, largest = coned(scene), by_runout + by_misalignment
+    wide = film.outer_radius - film.inner_radius
+    thinnest = clearance + min(
+        -largest * film.inner_radius, initially(film.coning) * wide - largest * film.outer_radius
+    )
+    return {"by_runout": by_runout, "by_misalignment": by_misalignment, "largest": largest,
+            "h_min": thinnest if thinnest > 0.0 else None}  # fmt: skip
+
+
 # --- what is shown -------------------------------------------------------------------------------------
 
 
@@ -194,7 +230,12 @@ def _found(numbers) -> str:
     )
     if ring is None:
         return f"{said}."
-    return f"{said}; the ring on it {'is stable' if ring['stable'] else 'whirls or hammers by itself'}."
+    said = f"{said}; the ring on it {'is stable' if ring['stable'] else 'whirls or hammers by itself'}"
+    follows = numbers["tracking"]
+    if not (ring["stable"] and follows and follows["largest"]):
+        return f"{said}."
+    low = f"thinnest film {in_words('h_min', follows['h_min'])}" if follows["h_min"] else "which closes the film"
+    return f"{said} and follows with a relative misalignment up to {in_words('tilt', follows['largest'])}, {low}."
 
 
 def _notes(numbers) -> list[str]:

@@ -104,7 +104,7 @@ def test_answers_to_runout_and_to_misalignment():
     ring, runout, misalignment = Ring(0.2, 3.5e-4, 1.64e4, 1e3, 3e5, 50.0), 2e-5, 4e-5
 
     def relative(motion):
-        turning = abs(runout_answer(motion, ring, runout) - runout)
+        turning = abs(runout_answer(motion, ring, runout, W) - runout)
         standing = abs(misalignment_answer(motion, ring, misalignment))
         return np.array([turning + standing, abs(turning - standing)])
 

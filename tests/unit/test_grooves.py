@@ -263,3 +263,13 @@ def test_check_says_how_deep_the_grooves_are_and_which_way_they_pump(scenario):
     assert not found["warnings"] and "inwards" in " ".join(resolved_lines(found))
     assert checked(scenario.with_(shaft__speed=-1000.0))["grooves"]["pumping"] == "outwards"
     assert len(checked(scenario.with_(shaft__speed=20000.0, film__clearance="8 um"))["warnings"]) == 1
+
+
+def test_a_stator_follows_its_grooved_rotor_as_the_row_has_it(scenario, tmp_path):
+    """Linear part of the row fms_gas_5bar: 2.245e-5 and 7.577e-6 rad are sum and difference of the two."""
+    tilts = {"rotor.runout": 2e-5, "stator.misalignment": 4e-5}
+    stiff = {"stator.support.tilt_stiffness": 3e5, "stator.support.tilt_damping": 50.0}
+    found = run_study("coefficients", scenario.with_({**tilts, **stiff}), tmp_path / "found.h5")["tracking"]
+    turning, standing = found["by_runout"], found["by_misalignment"]
+    assert [turning + standing, abs(turning - standing)] == pytest.approx([2.245e-5, 7.5773e-6], rel=4e-3)
+    assert found["h_min"] == pytest.approx(3e-6 - R_O * found["largest"], rel=1e-9)

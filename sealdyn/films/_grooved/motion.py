@@ -203,14 +203,14 @@ def tilt_law(motion: Motion, ring: Ring):
     return law
 
 
-def runout_answer(motion: Motion, ring: Ring, runout: complex) -> complex:
-    """Tilt of a standing ring (rad, in the pattern's frame, where it stays) to a runout of the patterned rotor:
-    (Z'(0)) g_r/(K - I W^2 + i W D + Z'(0))."""
-    return motion.frame_impedance(0.0) * runout / tilt_law(motion, ring)(1j * motion.frame)
+def runout_answer(motion: Motion, ring: Ring, runout: complex, speed: float) -> complex:
+    """Tilt of a standing ring (rad, in the frame of a rotor that turns at `speed` (rad/s), where it stays) to the
+    rotor's runout: Z(i W) g_r/(K - I W^2 + i W D + Z(i W)); of a patterned rotor Z(i W) = Z'(0)."""
+    return motion.tilt_impedance(1j * speed) * runout / tilt_law(motion, ring)(1j * speed)
 
 
 def misalignment_answer(motion: Motion, ring: Ring, misalignment: complex) -> complex:
-    """Tilt of a standing ring (rad, inertial) whose support is misaligned: K g_i/(K + Z'(-i W))."""
+    """Tilt of a standing ring (rad, inertial) whose support is misaligned: K g_i/(K + Z(0))."""
     return ring.angular_stiffness * misalignment / tilt_law(motion, ring)(0.0)
 
 
