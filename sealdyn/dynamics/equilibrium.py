@@ -17,7 +17,7 @@ from ..numerics.piecewise_linear import PiecewiseLinear, initially
 from ..quantities import resolved
 from ..scene.contact import contact_thresholds
 from ..scene.film import aligned_gaps, coned
-from ..scene.patterns import waves_of
+from ..scene.patterns import grooves_of, waves_of
 from ..scene.scene import Scene, SceneError
 from .imposed_motion import set_conditions
 from .intervals import Interval, constant_and_slope, spins
@@ -79,7 +79,7 @@ def settle(scene: Scene, opening_force) -> tuple[float, ClosingForce, list[Equil
     roots = equilibria(film, opening_force, law.at(inner, outer, initially(law.spring)), inner, outer, *surfaces)
     stable = [root for root in roots if root.stable]
     if not stable:
-        raise SceneError(*_no_equilibrium(film, opening_force, law, inner, outer, roots, bool(scene.contact)))
+        raise SceneError(*_no_equilibrium(scene, opening_force, law, inner, outer, roots))
     said = f"{len(roots)} equilibrium clearance(s) found, {len(stable)} stable"
     if len(stable) > 1:
         said += "; the run starts at the widest stable one"
@@ -234,7 +234,8 @@ def axial_shift(model, interval: Interval, speed: float | None = None) -> tuple[
     return 0.0, False
 
 
-def _no_equilibrium(film, opening_force, law, inner, outer, roots, asperities):
+def _no_equilibrium(scene, opening_force, law, inner, outer, roots):
+    film, asperities, grooves = coned(scene), scene.contact is not None, grooves_of(scene)[1]
     closing = law.at(inner, outer, initially(law.spring))
     reference = max(extent(film)[0], 1e-6)
     closed, wide = (opening_force(c, inner, outer) for c in (reference / 100, reference * 100))
@@ -244,8 +245,12 @@ def _no_equilibrium(film, opening_force, law, inner, outer, roots, asperities):
     rounding = 1e-9 * abs(wide)
     if tight - wide > rounding:
         expected = f"between {wide:.4g} N, which this film carries wide open, and {tight:.4g} N, nearly closed"
-        if closing > tight and not asperities:
+        if closing > tight and not asperities and not grooves:
             expected += "; beyond that a seal rides on its asperities, which a table [contact] counts"
+    elif grooves and math.isnan(tight):
+        expected = "a film over the grooves at some clearance: none is found, or a liquid would tear at all of them"
+    elif grooves:
+        expected = "a film that carries more as it thins: grooves pump the other way with the other sign of their angle"
     elif inner == outer:
         expected = "a difference of the pressures, of which this film would carry more as it closes"
     else:

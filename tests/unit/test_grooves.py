@@ -273,3 +273,13 @@ def test_a_stator_follows_its_grooved_rotor_as_the_row_has_it(scenario, tmp_path
     turning, standing = found["by_runout"], found["by_misalignment"]
     assert [turning + standing, abs(turning - standing)] == pytest.approx([2.245e-5, 7.5773e-6], rel=4e-3)
     assert found["h_min"] == pytest.approx(3e-6 - R_O * found["largest"], rel=1e-9)
+
+
+@pytest.mark.parametrize("closing", [None, Closing(0.83, 60.0)])
+def test_grooves_without_a_mesh_are_refused_as_such(closing):
+    """Whether or not a clearance is looked for."""
+    flat = seal(rotor=[replace(SPIRAL, count=100_000)])
+    scene = flat if closing is None else replace(flat, closing=closing, film=replace(GAS, clearance=None))
+    with pytest.raises(SceneError) as error:
+        aligned_film(scene, settle(scene, opening_law(scene))[0])
+    assert error.value.key == "rotor.grooves"

@@ -90,13 +90,21 @@ class AlignedFilm:
         return float(self.fine.p.min())
 
 
+def meshes_of(scene, columns: int):
+    """The coarser and the finer mesh of a scene.  Raises SceneError for grooves so many and so flat that it has too
+    many nodes."""
+    (face, (one,)), film = grooves_of(scene), scene.film
+    try:
+        return [mesh_of(pattern_of(one), film.inner_radius, film.outer_radius, columns, times) for times in (1, 2)]
+    except ValueError as error:
+        raise SceneError(f"{face}.grooves", str(error), "fewer grooves, or steeper ones") from None
+
+
 def aligned_film(scene, clearance: float, columns: int = COLUMNS) -> AlignedFilm:
     """The film of a scene with grooves at a clearance (m), so many columns to a pitch of the coarser mesh.  Raises
     SceneError where there is none, or where a liquid would tear."""
-    face, (one,) = grooves_of(scene)
-    film, pattern = scene.film, pattern_of(one)
+    face, film, meshes = grooves_of(scene)[0], scene.film, meshes_of(scene, columns)
     try:
-        meshes = [mesh_of(pattern, film.inner_radius, film.outer_radius, columns, times) for times in (1, 2)]
         pair = [steady(mesh, conditions_of(scene, clearance)) for mesh in meshes]
     except (NoSteadyFilm, ValueError) as error:
         where = f"a clearance of {clearance:.4g} m over grooves: {error}"
@@ -117,6 +125,8 @@ class OpeningForce:
 
     def __init__(self, scene):
         self.scene, self.nodes, self.none_below = scene, {}, {}
+        # No clearance makes good for grooves that have no mesh.
+        meshes_of(scene, MANY)
 
     def __call__(self, clearance: float, inner_pressure: float, outer_pressure: float) -> float:
         if not THINNEST <= clearance <= WIDEST:
