@@ -20,7 +20,7 @@ WORN = ROUGH | {"contact": ROUGH["contact"] | {"stator_wear_coefficient": 1e-15}
 # thresholds that need other speeds.
 ELSEWHERE = {
     "time", "theta", "residual", "seconds", "multipliers", "moment", "critical_speed", "speed_margin", "speeds_held",
-    "closing_said", "message", "verdict", "notes", "heat", "balance", "why_none", "tables",
+    "closing_said", "message", "verdict", "notes", "heat", "balance", "why_none", "tables", "cold_coning",
 }  # fmt: skip
 # Study, seal, settings.
 AT_ONE_SPEED = {
