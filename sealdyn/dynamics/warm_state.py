@@ -57,8 +57,7 @@ TINY = 1e-9
 HALVINGS = 30
 # From rise to rise in looking for the balance of a speed nearby: first, and at most: near a fold two states are close.
 WIDER, WIDEST = 1.05, 1.2
-# Secants at most from a state nearby, the share of it that they may go, the last of them, and the share of the slope by
-# which the surplus falls at least: it stands still at a fold.
+# Secants at most, how far one goes as a share, the last of them, and the least slope of the surplus, none at a fold.
 SECANTS, NEARBY, SETTLED, DOUBTFUL = 8, 0.5, 1e-7, 0.05
 # From clearance to clearance in following one, and how far it is followed from rise to rise.
 STRIDE, REACH = 1.03, 60
@@ -358,6 +357,8 @@ class Warming:
     def _by_secants(self, near: WarmState) -> WarmState | None:
         """The same, where a few secants end in it; None in any doubt."""
         rise, clearance, before = near.rise, near.clearance, None
+        if not rise:
+            before, rise = (0.0, self.surplus(near)), self.surplus(near) / (self.conductance + near.carried)
         for _ in range(SECANTS):
             if (state := self._held(rise, clearance)) is None:
                 return None
@@ -441,10 +442,9 @@ def at_work(scene, speed: float | None = None, near: WarmState | None = None):
     if state is None and near is not None:
         raise NoWarmState("shaft.speed", f"no warm state at {speed:.6g} rad/s", "a speed whose heat is carried away")
     if state is None:
-        why = found.why_none()
         raise NoWarmState(
             "film.heat",
-            f"no warm state: {why}",
+            f"no warm state: {found.why_none()}",
             "rings and leakage that carry the heat away, or a liquid known to a higher temperature",
         )
     return found.at(state.rise, state.clearance), state

@@ -21,6 +21,7 @@ WORN = ROUGH | {"contact": ROUGH["contact"] | {"stator_wear_coefficient": 1e-15}
 ELSEWHERE = {
     "time", "theta", "residual", "seconds", "multipliers", "moment", "critical_speed", "speed_margin", "speeds_held",
     "closing_said", "message", "verdict", "notes", "heat", "balance", "why_none", "tables", "cold_coning",
+    "periods_used",
 }  # fmt: skip
 # Study, seal, settings.
 AT_ONE_SPEED = {
