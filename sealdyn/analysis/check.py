@@ -11,7 +11,6 @@ from time import monotonic
 from ..closed_form.stability import couette_reynolds
 from ..dynamics.equilibrium import settle
 from ..dynamics.interface import opening_law
-from ..faces.pattern import pumps
 from ..films import film_named, film_names, film_of
 from ..kernel_cache import compiling, kept_kernels, kernel_folder
 from ..radial_seals.followers import closed_form_sentences
@@ -90,7 +89,7 @@ def _over_grooves(scenario: Scenario) -> dict:
         "equilibria": [vars(e) for e in equilibria],
         "grooves": {
             "face": face,
-            "pumping": pumps(one.angle, condition.entrainment) if one.shape == "spiral" else None,
+            "pumping": film.pumping,
             "depth_over_film": one.depth / clearance,
             "reynolds_number": reynolds,
         },

@@ -37,6 +37,7 @@ from ..faces.geometry import (
     SPIN_DIFFERENCE,
     TORQUE,
 )
+from ..films import film_of
 from ..numerics.piecewise_linear import initially, shifted
 from ..scene.film import coned
 from ..scene.liquid import in_numbers, liquid_of
@@ -45,7 +46,7 @@ from ..scene.scene import Closing, SceneError
 from ..status import Status
 from .equilibrium import closing_law, crossing, equilibria
 from .heated_rings import ThermalStates, heated_body
-from .interface import Asked, Interface, film_of, flow_at_rest, lender, opening_law, prepared, rest_state
+from .interface import Asked, Interface, flow_at_rest, lender, opening_law, prepared, rest_state
 
 # Rises that are looked at between the first, as a share of the last, and the end of the liquid's table.
 SCANNED, FIRST = 60, 1e-4
@@ -356,9 +357,8 @@ class Warming:
 
     def _by_secants(self, near: WarmState) -> WarmState | None:
         """The same, where a few secants end in it; None in any doubt."""
-        rise, clearance, before = near.rise, near.clearance, None
-        if not rise:
-            before, rise = (0.0, self.surplus(near)), self.surplus(near) / (self.conductance + near.carried)
+        before = None if near.rise else (0.0, near.power)
+        rise, clearance = near.rise or near.power / (self.conductance + near.carried), near.clearance
         for _ in range(SECANTS):
             if (state := self._held(rise, clearance)) is None:
                 return None

@@ -36,6 +36,12 @@ class Edges(NamedTuple):
         return self.twisted[0]
 
 
+def _off_middle(angle, count: int):
+    """How far (rad) an angle (rad) is from the nearest of so many middles around the circle, the first at 0."""
+    pitch = 2.0 * math.pi / count
+    return np.mod(angle + 0.5 * pitch, pitch) - 0.5 * pitch
+
+
 @dataclass(frozen=True)
 class Spiral:
     """Logarithmic spiral grooves.
@@ -54,10 +60,9 @@ class Spiral:
 
     def depth_at(self, r, phi) -> np.ndarray:
         """Depth (m) at radii r (m) and angles phi (rad), which broadcast."""
-        pitch = 2.0 * math.pi / self.count
         xi = phi - np.log(np.divide(r, self.inner_radius)) / math.tan(self.angle) - self.phase
-        off = np.mod(xi + 0.5 * pitch, pitch) - 0.5 * pitch
-        inside = (r >= self.inner_radius) & (r <= self.outer_radius) & (np.abs(off) <= 0.5 * self.share * pitch)
+        off, half = np.abs(_off_middle(xi, self.count)), math.pi * self.share / self.count
+        inside = (r >= self.inner_radius) & (r <= self.outer_radius) & (off <= half)
         return np.where(inside, self.depth, 0.0)
 
     @property
@@ -89,11 +94,8 @@ class Boxes:
 
     def depth_at(self, r, phi) -> np.ndarray:
         """Depth (m) at radii r (m) and angles phi (rad), which broadcast; boxes that overlap are not deeper there."""
-        pitch = 2.0 * math.pi / self.count
-        off = np.abs(np.mod(phi - self.phase + 0.5 * pitch, pitch) - 0.5 * pitch)
-        inside = [
-            (r >= box.inner_radius) & (r <= box.outer_radius) & (off <= 0.5 * box.share * pitch) for box in self.boxes
-        ]
+        off, half = np.abs(_off_middle(phi - self.phase, self.count)), math.pi / self.count
+        inside = [(r >= box.inner_radius) & (r <= box.outer_radius) & (off <= half * box.share) for box in self.boxes]
         return np.where(np.any(inside, axis=0), self.depth, 0.0)
 
     @property
@@ -128,8 +130,7 @@ class Dimples:
         pitch = 2.0 * math.pi / self.count
         across = self.radius * np.log(np.divide(r, self.radius))
         cos, sin = math.cos(self.angle), math.sin(self.angle)
-        off = np.mod(phi - self.phase + 0.5 * pitch, pitch) - 0.5 * pitch
-        inside = False
+        off, inside = _off_middle(phi - self.phase, self.count), False
         for turned in (-pitch, 0.0, pitch):
             along = self.radius * (off + turned)
             x, y = along * cos + across * sin, across * cos - along * sin

@@ -11,7 +11,7 @@ from functools import cache
 
 from ..numerics.piecewise_linear import points
 from ..scene.film import profile_errors
-from ..scene.patterns import SERVED, grooves_of, turning_waves, waves_of, waviness_errors
+from ..scene.patterns import grooves_of, turning_waves, waves_of, waviness_errors
 from ..scene.scene import SceneError
 from ._contract import Film, Offer
 
@@ -81,12 +81,18 @@ def film_names(table=None, waves=()) -> list[str]:
     return sorted(able)
 
 
+def refuse_grooves(scene) -> None:
+    """Raises SceneError for grooves in a face, over which no film moves rings yet."""
+    if ring := grooves_of(scene)[0]:
+        served = "none, or one of the studies equilibrium, load-support, stribeck and coefficients"
+        raise SceneError(f"{ring}.grooves", "grooves in a face", f"{served}: nothing else reckons with grooves yet")
+
+
 def film_of(scene, film: Film | None = None) -> Film:
     """The film that a scene (or what has its tables) asks for, or the `film` given instead; "auto" is the highest
     that takes the scene's faces, until a choice is certified.  Raises SceneError where it cannot take them."""
     table, waves = scene.film, waves_of(scene)
-    if ring := grooves_of(scene)[0]:
-        raise SceneError(f"{ring}.grooves", "grooves in a face", f"none, or one of the {SERVED}")
+    refuse_grooves(scene)
     if film is None:
         able, name = film_names(table, waves), table.model
         if name == "auto":

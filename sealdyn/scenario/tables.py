@@ -190,7 +190,7 @@ def _impossible(file: ScenarioFile) -> list[SceneError]:
         wrong = application_errors(file.application) + unknown_rules(file.application.acknowledge)
         bad += [SceneError(f"application.{key}", found, expected) for key, found, expected in wrong]
     try:
-        # Over grooves no film runs in time yet; two studies have one of their own.
+        # Over grooves no film runs in time yet; some studies have one of their own.
         _ = bad or grooves_of(file)[1] or film_of(file)
     except SceneError as error:
         bad.append(error)

@@ -74,10 +74,6 @@ def waviness_errors(scene) -> list[tuple[str, str, str]]:
     return bad
 
 
-# What serves a scene with grooves so far.
-SERVED = "studies equilibrium, load-support, stribeck and coefficients: nothing else reckons with grooves yet"
-
-
 @dataclass(frozen=True)
 class Grooves:
     """One row of equal grooves with sharp edges.

@@ -89,9 +89,8 @@ def whirl_ratio(found, speed: float) -> float | None:
 
 def speeds_held(model, interval=None) -> list[float] | None:
     """The `held_speeds` (rad/s) of what `thresholds` looks through, None where that is all."""
-    low, high = _range(model, interval)
-    whole = low / AROUND, high * AROUND
-    held = held_speeds(model, interval, *whole) if high else whole
+    whole = _range(model, interval)
+    held = held_speeds(model, interval, *whole) if whole[1] else whole
     return None if held == whole else list(held)
 
 
@@ -103,12 +102,12 @@ def thresholds(model, interval=None) -> list[float]:
     a floor of the pressure, unknowns of its own, heat or waves those that 30 speeds a decade tell apart, from a
     thousandth of the smaller of the shaft's speed and `natural_frequency` to a thousand times the larger, within
     `held_speeds`."""
-    low, high = _range(model, interval)
-    if not high:
+    whole = _range(model, interval)
+    if not whole[1]:
         return []
     values, whirl = whirl_over_speed(model, interval)
     neutral, points = ((), None) if whirl is None else (neutral_speeds(whirl), POINTS_KNOWN)
-    low, high = held_speeds(model, interval, low / AROUND, high * AROUND)
+    low, high = held_speeds(model, interval, *whole)
     return stability_thresholds.thresholds(values, low, high, points, neutral)
 
 
@@ -126,8 +125,8 @@ def resonance_speeds(model, interval=None) -> list[float]:
         return []
     values, whirl = whirl_over_speed(model, interval)
     # Of the same search as the thresholds'.
-    first, last = _range(model, interval)
-    low, high = np.clip([1e-2 * natural, 1e2 * natural], *held_speeds(model, interval, first / AROUND, last * AROUND))
+    held = held_speeds(model, interval, *_range(model, interval))
+    low, high = np.clip([1e-2 * natural, 1e2 * natural], *held)
     return stability_thresholds.resonance_speeds(values, low, high, whirl=whirl)
 
 
@@ -167,10 +166,11 @@ def held_speeds(model, interval, low: float, high: float) -> tuple[float, float]
 
 
 def _range(model, interval) -> tuple[float, float]:
-    """The smaller and the larger of natural frequency and the shaft's speed (rad/s), without those that are zero."""
+    """Speeds (rad/s) between which thresholds are looked for, 0 and 0 without any: AROUND below the smaller and above
+    the larger of natural frequency and the shaft's speed, of those that are not zero."""
     speed = abs(model.linear_scene(interval).rings[ROTOR].spin)
     known = [w for w in (natural_frequency(model, interval), speed) if w]
-    return min(known, default=0.0), max(known, default=0.0)
+    return min(known, default=0.0) / AROUND, max(known, default=0.0) * AROUND
 
 
 def natural_frequency(model, interval=None) -> float:

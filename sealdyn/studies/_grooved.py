@@ -8,7 +8,6 @@ import numpy as np
 from ..answers import Answer, Axis, Level, Panel, Series, Table
 from ..dynamics.equilibrium import settle
 from ..dynamics.interface import opening_law
-from ..faces.pattern import pumps
 from ..films._grooved.aligned import AlignedFilm, aligned_film, axial_stiffness
 from ..films._grooved.motion import (
     Motion,
@@ -25,7 +24,6 @@ from ..quantities import in_words
 from ..scenario.settings import values_in_si
 from ..scene.film import coned
 from ..scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE, density_of
-from ..scene.patterns import grooves_of
 from ..scene.scene import SceneError
 from ..scene.variants import frozen_at_start
 
@@ -83,7 +81,7 @@ def coefficients_over_grooves(scenario, scene, settings) -> Answer:
         "film_force": found.better(lambda one: one.force)[0],
         "error": _errors(found, frequencies[0]),
         "least_pressure": found.least_pressure,
-        "pumping": _pumping(scene, found),
+        "pumping": found.pumping,
         "modes": modes(scene, found),
         "tracking": tracking(scene, found, clearance),
     }  # fmt: skip
@@ -111,12 +109,6 @@ def _errors(found: AlignedFilm, frequency: float) -> dict:
     return {
         name: float(error / abs(value)) if value else 0.0 for name, (value, error) in zip(ERRORS, pairs, strict=True)
     }
-
-
-def _pumping(scene, found: AlignedFilm) -> str | None:
-    """Which way spiral grooves pump."""
-    one = grooves_of(scene)[1][0]
-    return pumps(one.angle, found.fine.film.conditions.entrainment) if one.shape == "spiral" else None
 
 
 def _mapped(scene, speeds, frequencies) -> dict:

@@ -16,7 +16,7 @@ from typing import Any
 from .. import __version__, studies
 from ..answers import as_json, plain
 from ..archive import file_stem, link_target, only_writer, write_study
-from ..films import film_of
+from ..films import film_of, refuse_grooves
 from ..kernel_cache import solvers_digest
 from ..numerics.parallel import Checkpoint, Results, evaluate, processes
 from ..quantities import in_words, reading_in
@@ -25,7 +25,7 @@ from ..scenario.overrides import radius_key
 from ..scenario.reader import Scenario
 from ..scenario.settings import bare_settings, study_settings, without, written_settings
 from ..scene import variants
-from ..scene.patterns import SERVED, face_orders, faces_tilt, grooves_of, waves_of
+from ..scene.patterns import face_orders, faces_tilt, waves_of
 from ..scene.radial import RadialScene
 from ..scene.scene import SceneError
 from ..simulation.plausibility import declared, kind_of, unusual, usual_of
@@ -214,8 +214,7 @@ def _refuse_seal(name: str, info: Info, scene):
         raise SceneError(_key_of_pattern(scene), "wavy faces", expected)
     if scene.film.pads:
         raise SceneError("film.pads", "pads", f"none: this study ({name}) knows faces that are the same all around")
-    if grooved := grooves_of(scene)[0]:
-        raise SceneError(f"{grooved}.grooves", "grooves in a face", f"none, or one of the {SERVED}")
+    refuse_grooves(scene)
 
 
 def _key_of_pattern(scene) -> str:

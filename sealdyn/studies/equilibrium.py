@@ -31,7 +31,6 @@ from ..scene.variants import frozen_at_start
 from ..simulation.heat import heat_of, limits_of, limits_said
 from ..units import Length
 from . import Info
-from ._grooved import flows_over_grooves
 
 INFO = Info(
     timed=("run_in", 2),
@@ -202,6 +201,9 @@ def _flows(scene, clearance, carried) -> dict:
     cavitates."""
     film = replace(scene.film, clearance=clearance)
     if grooves_of(scene)[1]:
+        # Sparse matrices are loaded for grooves only, here and elsewhere.
+        from ._grooved import flows_over_grooves
+
         return flows_over_grooves(scene, clearance, carried)
     interface = Interface(replace(scene, film=film, closing=Closing()), FINE)
     s, _ = rest_state(interface.scene, clearance)

@@ -11,7 +11,7 @@ import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from ...faces.pattern import Box, Boxes, Spiral, tee
+from ...faces.pattern import Box, Boxes, Spiral, pumps, tee
 from ...numerics.piecewise_linear import initially
 from ...scene.film import coned
 from ...scene.gas import GasReynolds, gas_of, viscosity_of
@@ -59,6 +59,7 @@ class AlignedFilm:
     coarse: Steady
     fine: Steady
     frame: float
+    grooves: Grooves
 
     @cached_property
     def order(self) -> float:
@@ -83,6 +84,12 @@ class AlignedFilm:
     def of_motion(self, number):
         """As `better`, of a `number(motion)`."""
         return extrapolated(*(number(motion) for motion in self.motions), self.order)
+
+    @property
+    def pumping(self) -> str | None:
+        """Which way spiral grooves pump; None of a tee, which has no sense."""
+        spiral = self.grooves.shape == "spiral"
+        return pumps(self.grooves.angle, self.fine.film.conditions.entrainment) if spiral else None
 
     @property
     def least_pressure(self) -> float:
@@ -110,7 +117,7 @@ def aligned_film(scene, clearance: float, columns: int = COLUMNS) -> AlignedFilm
         where = f"a clearance of {clearance:.4g} m over grooves: {error}"
         raise SceneError("film", where, "a clearance of the size of a film's") from None
     frame = initially(scene.shaft.speed) if face == "rotor" else initially(scene.stator.speed)
-    found = AlignedFilm(*pair, frame)
+    found = AlignedFilm(*pair, frame, grooves_of(scene)[1][0])
     if film.gas is None and found.least_pressure < 0.0:
         where = f"a film that would tear (least pressure {found.least_pressure:.3g} Pa)"
         raise SceneError(
