@@ -130,17 +130,19 @@ class ThermalStates:
         return rates @ self.coning
 
     def matrix(self, squeezed: np.ndarray, heated: np.ndarray, arm: float) -> np.ndarray:
-        """Rates (1/s) of clearance and theta about a warm state over small changes of these, (1 + states, the same).
+        """Rates (1/s) of a thickness and theta about a warm state over small changes of these, (1 + states, the same).
 
         `squeezed`, `heated`: slopes of the clearance's rate (m/s) and of the heat that enters the rings (W), over
-        clearance (m), rise (K) and coning by heat (rad); `arm` (m/rad) of the coning's rate beside the clearance's.
+        clearance (m), rise (K) and coning by heat (rad); `arm` (m/rad) of the coning's rate beside the clearance's:
+        the thickness, at that arm, is what the film's force moves, whatever follows the heat at once.
         """
         states = len(self.content)
+        squeezed, heated = (by - arm * by[0] * np.array([0.0, 0.0, 1.0]) for by in (squeezed, heated))
         if not self.several:
             # One state is the rise itself, and coning goes with it.
             squeezed, heated = (np.array([by[0], by[1] + self.coning[0] * by[2]]) for by in (squeezed, heated))
             warmed = np.array([heated[0], heated[1] - self.leaving[0]]) / self.content
-            return np.array([squeezed - arm * self.coning[0] * warmed, warmed])
+            return np.array([squeezed, warmed])
         beneath = np.zeros((len(self.immediate), 1 + states))
         beneath[self.ring, 1 + np.arange(states)] = self.share
         coning = np.concatenate([[0.0], self.coning]) - self.immediate_coning @ beneath
@@ -157,5 +159,4 @@ class ThermalStates:
         found[1:] = self.resistance[:, None] * entering[self.ring]
         found[1:, 1:] -= np.eye(states)
         found[1:] /= self.time[:, None]
-        found[0] -= arm * self.coning_rate(found[1:].T)
         return found

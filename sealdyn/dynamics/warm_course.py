@@ -59,15 +59,22 @@ class Course:
         return {**{key: float(value) for key, value in found.items()}, "energy_residual": self.residual}
 
 
-def film_between(rings: ThermalStates, found: Warming, theta: np.ndarray, clearance: float, rise: float) -> WarmState:
-    """The state of the film at a clearance (m) between rings in states theta (K), its rise looked for from a `rise` (K)
-    on."""
+def film_between(
+    rings: ThermalStates, found: Warming, theta: np.ndarray, thickness: float, arm: float, least: float
+) -> WarmState:
+    """The state of the film between rings in states theta (K): `thickness` (m) at an `arm` (m) from the inner radius,
+    its cold coning aside, and at least `least` (m) at that radius.  What follows the heat at once may balance at two
+    rises: the lower one goes on from before, and secants from below, of heat that grows ever faster, end in it."""
     if not rings.several:
-        return found.state(float(theta[0]), clearance)
+        coned_by = float(rings.coning @ theta)
+        return found.state(float(theta[0]), max(thickness - arm * coned_by, least), coned_by)
     beneath, before = rings.beneath(theta), None
     coned, held = float(rings.coning @ theta), rings.immediate @ beneath
+    # Where no heat enters.
+    rise = float(held / np.sum(rings.immediate))
     for _ in range(CORRECTIONS):
-        now = found.state(rise, clearance, coned + float(rings.immediate_coning @ (rise - beneath)))
+        coned_by = coned + float(rings.immediate_coning @ (rise - beneath))
+        now = found.state(rise, max(thickness - arm * coned_by, least), coned_by)
         balanced = (now.power + held) / (np.sum(rings.immediate) + now.carried)
         tried = rise, float(balanced - rise)
         if abs(tried[1]) < SAME:
@@ -143,22 +150,23 @@ def course(scene, times, start: WarmState, say: Callable[[float], None] = lambda
     whole, cold = warming(scene), unheated(scene)
     rings, unit = ThermalStates(whole.rings), start.clearance
     first = whole.under(frozen_at(scene, times[0]))
-    # Clearance, states of the rings, heat made and heat that left (J).
-    y, kept, collapsed, near = np.array([1.0, *rings.steady(start.rise), 0.0, 0.0]), [], None, [start.rise]
-    damped, lacking = first.damping(start.rise, unit)[0], [0.0]
+    (damped, turned), kept, collapsed, lacking = first.damping(start.rise, unit), [], None, [0.0]
+    # Coning that follows the heat at once turns the faces about where it squeezes nothing: the thickness there is the
+    # unknown beside the states of the rings, the heat made and the heat that left (J).
+    arm = turned / damped
+    y = np.array([1.0 + arm * start.coned_by / unit, *rings.steady(start.rise), 0.0, 0.0])
 
     def here(t):
         return whole.under(frozen_at(scene, float(t)))
 
     def rates(t, y):
-        found, clearance = here(min(max(t, inside[0]), inside[1])), max(float(y[0]), CLOSED) * unit
-        theta = y[1:-2]
-        now = film_between(rings, found, theta, clearance, near[0])
-        near[0], carried = now.rise, now.carried * now.rise
+        found, theta = here(min(max(t, inside[0]), inside[1])), y[1:-2]
+        now = film_between(rings, found, theta, float(y[0]) * unit, arm, CLOSED * unit)
+        carried = now.carried * now.rise
         warming_up = rings.rates(theta, now.rise) if rings.several else [found.surplus(now) / rings.content[0]]
-        axial, turning = found.damping(now.rise, clearance, now.coned_by)
-        coning_rate = cold_rate + rings.coning_rate(np.asarray(warming_up))
-        squeezed = (now.excess - turning * coning_rate) / (max(axial, LEAST * damped) * unit)
+        axial, turning = found.damping(now.rise, now.clearance, now.coned_by)
+        by_heat = (turning - arm * axial) * rings.coning_rate(np.asarray(warming_up))
+        squeezed = (now.excess - turning * cold_rate - by_heat) / (max(axial, LEAST * damped) * unit)
         return np.array([squeezed, *warming_up, now.power, float(rings.leaving @ theta) + carried])
 
     def jacobian(t, y):
@@ -171,7 +179,7 @@ def course(scene, times, start: WarmState, say: Callable[[float], None] = lambda
         return found
 
     def closed(t, y):
-        return y[0] - CLOSED
+        return y[0] - arm * float(rings.coning @ y[1:-2]) / unit - CLOSED
 
     closed.terminal = True
     scale = np.full(len(y), RESOLVED)
@@ -191,10 +199,10 @@ def course(scene, times, start: WarmState, say: Callable[[float], None] = lambda
             moments = np.interp(np.arange(each * (len(part.t) - 1) + 1) / each, np.arange(len(part.t)), part.t)
             columns = part.sol(moments)
         for t, column in list(zip(moments, columns.T, strict=True))[1 if kept else 0 :]:
-            clearance = max(float(column[0]), CLOSED) * unit
-            found = here(min(max(t, inside[0]), inside[1]))
-            lacking.append(abs(column[-2] - column[-1] - float(rings.content @ (column[1:-2] - start.rise))))
-            kept.append((float(t), film_between(rings, found, column[1:-2], clearance, start.rise)))
+            found, theta = here(min(max(t, inside[0]), inside[1])), column[1:-2]
+            lacking.append(abs(column[-2] - column[-1] - float(rings.content @ (theta - start.rise))))
+            thickness = float(column[0]) * unit
+            kept.append((float(t), film_between(rings, found, theta, thickness, arm, CLOSED * unit)))
         y = part.y[:, -1]
         say(end / times[-1])
         if part.status != 0:

@@ -146,6 +146,17 @@ def test_stribeck_has_the_warm_state_of_each_speed(drawn, pump, tmp_path):
     assert np.all(np.diff(found["unheated"]["torque"]) > 0.0)
 
 
+def test_cold_faces_at_full_speed_are_no_collapse():
+    """What follows the heat at once may balance at a second, far hotter place, which a seal does not jump to: a start
+    without duration is the limit of short ones."""
+    seal = sealdyn.example("pump_seal").with_({"film.outer_pressure": 5e5})
+    at_once, short = (sealdyn.study("warm-up", seal, start=start, hold=0.5).answer for start in (0.0, 0.002))
+    assert at_once["collapsed"] is None and max(at_once["power"]) < 2.0 * at_once["power"][0]
+    for key in ("rise", "coning", "clearance", "power"):
+        here, there = (float(CubicSpline(found["time"], found[key])(0.3)) for found in (at_once, short))
+        assert here == pytest.approx(there, rel=0.01), key
+
+
 def test_loads_with_tables_are_those_of_the_scenario(pump):
     """A speed that stays is no start from rest where a pressure changes; what is asked for beside is added."""
     rising = pump.with_({"film.outer_pressure": {"time": [0.0, 2.0], "value": [5e5, 1.1e6]}})
