@@ -177,12 +177,18 @@ def _height(ring) -> float:
 
 
 def _finish(seal: Seal, limit) -> Finding:
-    """Pass up to 0.14 um: two faces of 0.1 um have sqrt(2) times as much together.  The scene's roughness is an rms
-    one; a guide that averages reads some tenths less."""
+    """Pass up to 0.14 um, two faces of 0.1 um together; a note up to that of a hard face and a carbon nose.  The
+    scene's roughness is an rms one; a guide that averages reads some tenths less."""
     if seal.scene.contact is None:
         return missing_keys("contact.roughness")
-    roughness, most = seal.scene.contact.roughness, math.sqrt(2) * limit
-    sentence = f"both faces are rough by {1e6 * roughness:.4g} um together; two of 0.1 um have {1e6 * most:.2g} um"
+    roughness, (hard, nose) = seal.scene.contact.roughness, limit
+    most, with_nose = math.sqrt(2) * hard, math.hypot(hard, nose)
+    sentence = (
+        f"both faces are rough by {1e6 * roughness:.4g} um together; two of 0.1 um have {1e6 * most:.2g} um, with a "
+        f"carbon nose up to {1e6 * with_nose:.2g} um"
+    )
+    if most < roughness <= with_nose:
+        return limit_finding(sentence, roughness, most=most, beyond=Verdict.NOTE)
     return limit_finding(sentence, roughness, most=most)
 
 
@@ -355,21 +361,16 @@ def _gear_resonance(seal: Seal, limit) -> Finding:
 
 
 def _seal_temperature(seal: Seal, limit) -> Finding:
-    """Pass up to the material's temperature; a note where the guide's own numbers leave it open."""
+    """Pass up to the material's temperature (table 3.7)."""
     material, temperature = seal.application.secondary_seal_material, seal.o_ring_temperature
     if material is None:
         return missing_keys("application.secondary_seal_material")
     if material not in limit:
-        return other_seals("the rule knows nitrile and fluoroelastomer")
+        return other_seals(f"the rule knows {', '.join(limit)}")
     if temperature is None:
         return missing_keys("application.highest_temperature")
-    sure, most = limit[material]
-    sentence = f"{temperature:.4g} K at a secondary seal of {material}, good to {sure:g} K"
-    if most > sure:
-        sentence += f", at most {most:g} K"
-    if sure < temperature <= most:
-        return limit_finding(sentence, temperature, most=sure, beyond=Verdict.NOTE)
-    return limit_finding(sentence, temperature, most=most)
+    sentence = f"{temperature:.4g} K at a secondary seal of {material}, good to {limit[material]:g} K"
+    return limit_finding(sentence, temperature, most=limit[material])
 
 
 def _coking(seal: Seal, limit) -> Finding:
@@ -414,7 +415,7 @@ RULES = {
     ),
     "film_thickness": Rule(_film_thickness, (1.25e-6, 2.5e-6), "m", "typical film", RUN),
     # Of each face.
-    "finish": Rule(_finish, 0.1e-6, "m", "finish of the faces about 0.1 um", LOAD_SUPPORT),
+    "finish": Rule(_finish, (0.1e-6, 0.508e-6), "m", "about 0.1 um, carbon nose to 0.508 (3.2.1.4)", LOAD_SUPPORT),
     "flatness": Rule(_flatness, 0.88e-6, "m", "three helium light bands", LOAD_SUPPORT),
     "gear_resonance": Rule(
         _gear_resonance, None, "Hz", "gear mesh up to 5400 Hz, 45 g", "sealdyn study vibration FILE"
@@ -439,10 +440,8 @@ RULES = {
     ),
     # Up to a sliding speed (m/min), total indicator reading (m).
     "runout": Rule(_runout, ((1522.0, 0.508e-3), (3044.0, 0.38e-3), (6090.0, 0.254e-3)), "m", "table 3.8"),
-    # No doubt below the first, not beyond the second.
     "seal_temperature": Rule(
-        _seal_temperature, {"nitrile": (380.0, 380.0), "fluoroelastomer": (450.0, 477.0)}, "K",
-        "nitrile 380 K, fluoroelastomer 450 to 477 K",
+        _seal_temperature, {"nitrile": 380.0, "silicone": 450.0, "fluoroelastomer": 477.0}, "K", "table 3.7"
     ),
     "shaft_resonance": Rule(_shaft_resonance, None, "Hz", "rotation 3 to 350 Hz", "sealdyn study campbell FILE"),
     # 20 000 ft/min.

@@ -19,7 +19,7 @@ LIP_SPEED = np.array([1000.0, 2000.0, 3000.0, 4000.0]) * FOOT_PER_MINUTE
 # Table 3.1: pressure (Pa) of lip seals, and the speed (m/s) that it allows.
 LIP_PRESSURE = np.array([1.0, 3.0, 5.0]) * PSI
 LIP_PRESSURE_SPEED = np.array([3000.0, 2000.0, 1500.0]) * FOOT_PER_MINUTE
-# Table 3.3: the same of hydrodynamic lips, and the eccentricity (m) below which they work.
+# Table 3.3: the same of hydrodynamic lips; section 3.1.4: the eccentricity (m) below which they work.
 RIBBED_PRESSURE, RIBBED_SPEED = np.array([6.89e3, 20.6e3, 34.4e3]), np.array([1830.0, 1220.0, 610.0]) / 60.0
 RIBBED_ECCENTRICITY = 0.127e-3
 # Table 3.4: runout (m, total indicator reading) of circumferential seals without pressure, and the speed (m/s) that it
@@ -129,13 +129,13 @@ def _other_lips(sentence: str):
 
 FOLLOW = "sealdyn study followability FILE"
 LIP = {
-    "lip_eccentricity": Rule(_other_lips("table 3.3 is of hydrodynamic lips"), None, "m", "table 3.3", FOLLOW),
+    "lip_eccentricity": Rule(_other_lips("section 3.1.4 is of hydrodynamic lips"), None, "m", "section 3.1.4", FOLLOW),
     "lip_load": Rule(_lip_load, (87.5, 123.0), "N/m", "lip load of conventional lips", FOLLOW),
     "lip_pressure": Rule(_lip_pressure, (LIP_PRESSURE, LIP_PRESSURE_SPEED), "m/s", "table 3.1"),
     "lip_speed": Rule(_lip_speed, (LIP_ECCENTRICITY, LIP_SPEED), "m/s", "table 3.2", FOLLOW),
 }
 RIBBED_LIP = {
-    "lip_eccentricity": Rule(_lip_eccentricity, RIBBED_ECCENTRICITY, "m", "table 3.3", FOLLOW),
+    "lip_eccentricity": Rule(_lip_eccentricity, RIBBED_ECCENTRICITY, "m", "section 3.1.4", FOLLOW),
     "lip_load": Rule(_lip_load, (52.5, 70.0), "N/m", "lip load of hydrodynamic lips", FOLLOW),
     "lip_pressure": Rule(_lip_pressure, (RIBBED_PRESSURE, RIBBED_SPEED), "m/s", "table 3.3"),
     "lip_speed": Rule(_other_lips("table 3.2 is of conventional lips"), None, "m/s", "table 3.2", FOLLOW),

@@ -111,7 +111,7 @@ class Application:
     """Lowest sealed pressure in service, absolute."""
     highest_pressure: Pressure | None = None
     """Highest sealed pressure in service, absolute."""
-    secondary_seal_material: Literal["nitrile", "fluoroelastomer", "other"] | None = None
+    secondary_seal_material: Literal["nitrile", "silicone", "fluoroelastomer", "other"] | None = None
     """Of the O-ring or the like on which the ring slides."""
     gear_mesh_frequency: (
         Annotated[tuple[float, ...], Frequencies("frequency", "Hz", "", usual=FREQUENCY.usual)] | None
