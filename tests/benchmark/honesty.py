@@ -47,6 +47,7 @@ from judge import (
 )
 from scenes import prepared, set_start
 
+from sealdyn.films.reynolds.film import FILM
 from sealdyn.report.charts import palette
 from sealdyn.scenario.tables import Run
 from sealdyn.scene.patterns import tilt_is_imposed
@@ -156,7 +157,10 @@ def judge(number, family="wide", seed=SEED, budget=None, costs=True):
     if highest.film.gas is None and highest.film.model != "reynolds":
         highest = replace(highest, film=replace(highest.film, model="radial"))
     if not tilt_is_imposed(highest):
-        # Whether tilts may be left out is the run's answer.
+        # Whether tilts may be left out is the run's answer, and so is one sector for all; the cells are the same.
+        if highest.film.model == "reynolds":
+            cells = replace(FILM.prepared(highest).reynolds, sectors=None)
+            highest = replace(highest, film=replace(highest.film, reynolds=cells))
         highest = replace(highest, stator=replace(highest.stator, misalignment=NO_TILT))
 
     def make(accuracy=drawn.accuracy / 100):
