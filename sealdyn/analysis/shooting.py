@@ -1,9 +1,11 @@
-"""Periodic steady state by shooting, and its Floquet multipliers.
+"""Periodic steady state by shooting, or as a point where it only turns, and its Floquet multipliers.
 
 **Source** Newton's method on the period map P(x) = x (Nayfeh & Balachandran, Applied Nonlinear Dynamics, 1995,
 sec. 5.2); the multipliers are the eigenvalues of dP/dx at the orbit, and the orbit is stable when all lie inside
 the unit circle.  The derivative comes from fourth-order central differences of the flow.
 **Valid** constant conditions and commensurate forcing; a scene without forcing has its rest state as orbit.
+What is forced at one speed alone, faces alike all around, turns as a whole: in the frame of the forcing its steady
+state is a point (`ForcedWave`; Golubitsky, Stewart & Schaeffer 1988, ch. XVI), also of a film that stores.
 """
 
 from dataclasses import dataclass
@@ -11,13 +13,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..dynamics.extrema import H_RADIUS, H_TAU, H_THETA, LEAST, MOST, H
+from ..dynamics.imposed_motion import OWN, TURNING
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
 from ..faces.film_thickness import h_min
+from ..faces.geometry import DZ_RATE, GX, GX_RATE, GY, GY_RATE, MEAN_SPIN
+from ..scene.patterns import face_orders
+from ..scene.scene import SceneError
 from ..simulation.selection import choose_method
 from ..solvers.contract import Counts, Recorder, SolverFailure, Status
 from ..solvers.integrate import solve
 from ..solvers.methods import METHODS
+from .whirl.rotating_wave import SPEED_AT, STEP, RotatingWave
 
 # Right-hand sides that the path of orbits may take: three times what the dearest scenario needs.
 MOST_WORK = 1_200_000
@@ -31,6 +38,8 @@ CRAWLING = 10_000
 CLOSED = 0.01
 # Tolerances, by method: BDF errs more than its tolerance; and the finest that rounding leaves to each.
 SHARPER, FINEST = {"bdf": 1e-2}, {"ida": 1e-11, "bdf": 1e-12}
+# Newton's steps to the point of a forcing's frame, and the last of them, in units of the scales.
+MOST_POINTS, POINT = 25, 1e-12
 # Scale of an unknown whose error is free.
 FREE = 1e30
 WEIGHTS = ((-2, 1 / 12), (-1, -2 / 3), (1, 2 / 3), (2, -1 / 12))
@@ -38,6 +47,10 @@ WEIGHTS = ((-2, 1 / 12), (-1, -2 / 3), (1, 2 / 3), (2, -1 / 12))
 
 class NoOrbit(ValueError):
     """There is no isolated periodic orbit, or Newton did not find it: the sentence says which."""
+
+
+class NotOneSpeed(NoOrbit):
+    """The forcing does not turn at one speed alone."""
 
 
 class TooMuchWork(NoOrbit):
@@ -60,13 +73,13 @@ class _Crawls(NoOrbit):
 @dataclass(frozen=True)
 class Orbit:
     """A periodic steady state: period (s), mechanical unknowns (n,) at its start, monodromy matrix (n, n) in units of
-    the scales and its eigenvalues (n,), what Newton left (in units of the scales), periods integrated on the way, and
-    the extremes over the orbit (`Shooter.extremes`)."""
+    the scales and its eigenvalues (n,), None where they were not asked for, what Newton left (in units of the scales),
+    periods integrated on the way, and the extremes over the orbit (`Shooter.extremes`)."""
 
     period: float
     start: np.ndarray
-    monodromy: np.ndarray
-    multipliers: np.ndarray
+    monodromy: np.ndarray | None
+    multipliers: np.ndarray | None
     residual: float
     periods_used: int
     extremes: dict
@@ -186,6 +199,10 @@ class Shooter:
             self.period, x, monodromy, np.linalg.eigvals(monodromy), size, self.flows - begun, self.extremes(x)
         )
 
+    def multiplier(self, orbit: Orbit) -> float:
+        """Largest modulus of the Floquet multipliers of an orbit, by a monodromy of its own."""
+        return float(np.max(np.abs(np.linalg.eigvals(self.monodromy(orbit.start)))))
+
     def _correction(self, monodromy, defect):
         matrix = np.eye(self.size) - monodromy
         if np.min(np.abs(np.linalg.eigvals(matrix))) < 1e-10:
@@ -219,6 +236,94 @@ class Shooter:
         return found
 
 
+class ForcedWave:
+    """Steady states of a scene whose forcing turns at one `speed` (rad/s, 0 if it stands), as points of the frame that
+    turns with it, where nothing moves: no time is integrated.  Members as of `Shooter`; its orbits have neither
+    monodromy nor multipliers, of which `multiplier` tells the largest.
+    Raises NotOneSpeed where the forcing needs more than one frame, a ring has no mass or sticks."""
+
+    def __init__(self, scene, accuracy: float = 1e-8):
+        self.model, self.work = Model(scene, accuracy), 0
+        self.segment, unknowns = self.model.segment(), self.model.unknowns
+        tilts = self.segment.rows[:, 1]
+        speeds = set(self.segment.rows[np.isin(tilts, (OWN, TURNING)), 7])
+        one = self.segment.harmonic and unknowns.constant and np.all(np.isin(tilts, (OWN, TURNING)))
+        if not one or len(speeds) > 1 or unknowns.massless or unknowns.coulomb_rings or face_orders(scene):
+            raise NotOneSpeed("the forcing does not turn at one speed alone")
+        self.speed = speeds.pop() if speeds else 0.0
+        self.wave = RotatingWave(self.model)
+        self.scales = self.wave.scales
+
+    def state(self, q: np.ndarray) -> np.ndarray:
+        """Unknowns (size,) of displacements `q` (n,) that turn with the forcing, a film of its own steady there."""
+        y = self.wave.state(q, self.speed)
+        if self.model.interface.unknowns is not None:
+            # In this frame no gap moves, and the faces drag the fluid by so much less.
+            s = self.segment.gap_state(0.0, y).copy()
+            s[[DZ_RATE, GX_RATE, GY_RATE]] = 0.0
+            s[MEAN_SPIN] -= self.speed
+            y[self.segment.film] = self.model.interface.steady(self.model.f, s)
+        return y
+
+    def _unbalance(self, x):
+        """Accelerations left over (n,), scaled; not numbers where the film has no solution."""
+        q, yp = x * self.scales, np.empty(self.segment.size)
+        rates = self.segment.rhs if self.model.interface.unknowns is None else self.segment.ring_rates
+        try:
+            rates(0.0, self.state(q), yp)
+        except SceneError:
+            return np.full(len(x), np.nan)
+        self.work += 1
+        turning = self.speed**2 * self.wave.turned(self.wave.turned(q))
+        return (yp[self.wave.places] - turning) / (self.scales * self.wave.pace**2)
+
+    def guess(self) -> np.ndarray:
+        """The linear steady state (n,) at the start."""
+        return RunState(self.model, 1.0).steady_start()[: self.model.unknowns.n_mechanical]
+
+    def find(self, guess=None) -> Orbit:
+        """The point near `guess` (n,) (default: the linear steady state), by Newton's method until its steps are below
+        POINT, in units of the scales.  Raises NoOrbit."""
+        x, last = (self.guess() if guess is None else guess)[: self.wave.n] / self.scales, np.inf
+        for _ in range(MOST_POINTS):
+            left, matrix = self._unbalance(x), np.empty((len(x), len(x)))
+            for j in range(len(x)):
+                moved = np.zeros(len(x))
+                moved[j] = STEP
+                matrix[:, j] = (self._unbalance(x + moved) - self._unbalance(x - moved)) / (2 * STEP)
+            if not (np.all(np.isfinite(matrix)) and np.all(np.isfinite(left))):
+                break
+            step = np.linalg.solve(matrix, left)
+            x, before, last = x - step, last, float(np.max(np.abs(step)))
+            # To rounding, of which a stiff film leaves more.
+            if last < POINT or (last < 1e3 * POINT and last > 0.3 * before):
+                return self._orbit(x * self.scales, last)
+        raise NoOrbit("no point of the forcing's frame is found where the rings are in balance")
+
+    def _orbit(self, q, residual) -> Orbit:
+        y = self.state(q)
+        s = self.segment.gap_state(0.0, y)
+        low, theta, radius = h_min(self.model.face, s)
+        tilt = float(np.hypot(s[GX], s[GY]))
+        least = {
+            "value": low,
+            "time": 0.0,
+            "theta": theta,
+            "radius": radius,
+            "of_clearance": low / self.model.clearance,
+        }
+        extremes = {"h_min": least, "relative_misalignment": {"max": tilt, "min": tilt}, "collapsed": False}
+        start, period = y[: self.model.unknowns.n_mechanical], RunState(self.model, 1.0).period()
+        return Orbit(period, start, None, None, residual, 0, extremes)
+
+    def multiplier(self, orbit) -> float | None:
+        """Largest modulus of the Floquet multipliers of an orbit; None of a film that stores."""
+        if self.model.interface.stores:
+            return None
+        values = self.wave.disturbances(self.state(orbit.start[: self.wave.n]), self.speed, self.segment.p[SPEED_AT])
+        return float(np.exp(np.max(values.real) * orbit.period))
+
+
 class Follower:
     """Follows the periodic orbit as the forcing grows, until its thinnest film is the margin, or `touch` (m)."""
 
@@ -236,6 +341,21 @@ class Follower:
     def excess(self, value: float) -> float:
         """h_min / clearance - margin of the orbit at one forcing, guessed from its neighbours."""
         scene = self.scene(value)
+        try:
+            shooter = ForcedWave(scene, self.accuracy)
+            orbit = shooter.find(self._guess(value, shooter))
+        except NotOneSpeed:
+            shooter, orbit = self._shot(scene, value)
+        self.orbit, self.finder, self.start = orbit, shooter, orbit.start
+        self.known = [*[k for k in self.known if k[0] != value][-3:], (value, orbit.start, shooter.guess())]
+        low, model = orbit.extremes["h_min"], shooter.model
+        tilt, axial = orbit.extremes["relative_misalignment"]["max"], self._mean_axial(model, orbit)
+        self.path.append({"forcing": value, "h_min": low["value"], "radius": low["radius"], "tilt": tilt,
+                          "clearance": model.clearance, "axial": axial})  # fmt: skip
+        return low["value"] / model.clearance - (self.touch / model.clearance or self.margin)
+
+    def _shot(self, scene, value):
+        """The Shooter of a scene, and its orbit."""
         # A floored film has kinks and costs a hundred times more: a looser orbit is all it can give.
         tight, target = (1e-10, 1e-8) if scene.film.cavitation_pressure is None else (1e-6, 1e-5)
         shooter = Shooter(scene, self.accuracy, tight=tight)
@@ -246,13 +366,12 @@ class Follower:
             raise TooMuchWork(f"more than {MOST_WORK} right-hand sides for the path of orbits") from None
         finally:
             self.work += shooter.work
-        self.monodromy, self.start = orbit.monodromy, orbit.start
-        self.known = [*[k for k in self.known if k[0] != value][-3:], (value, orbit.start, shooter.guess())]
-        low, model = orbit.extremes["h_min"], shooter.model
-        tilt, axial = orbit.extremes["relative_misalignment"]["max"], self._mean_axial(model, orbit)
-        self.path.append({"forcing": value, "h_min": low["value"], "radius": low["radius"], "tilt": tilt,
-                          "clearance": model.clearance, "axial": axial})  # fmt: skip
-        return low["value"] / model.clearance - (self.touch / model.clearance or self.margin)
+        self.monodromy = orbit.monodromy
+        return shooter, orbit
+
+    def multiplier(self) -> float | None:
+        """Largest modulus of the Floquet multipliers of the last orbit."""
+        return self.finder.multiplier(self.orbit)
 
     def _guess(self, value, shooter):
         """The linear steady state, which scales with the forcing, plus what the nonlinear film adds to it: a
@@ -301,7 +420,8 @@ class Follower:
             if value == most and left > 0.0:
                 raise NoOrbit("the last orbit that may be followed does not touch")
             aim = 0.3 * left if left > 0.03 else 0.0
-            step = min((aim - left) / slope, 0.2 * linear)
+            # Where tilting opens the thinnest film, too, no secant knows how far.
+            step = min((aim - left) / slope, 0.2 * linear) if slope < 0.0 else 0.2 * linear
             if value > 20 * linear:
                 raise NoOrbit("no touch up to twenty times the linear onset")
         raise NoOrbit("the path of orbits did not reach touch in 80 steps")

@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 from scipy.optimize import brentq
 
-from ..analysis.shooting import Follower, NoOrbit, Shooter
+from ..analysis.shooting import Follower, NoOrbit
 from ..answers import Answer, Axis, Level, Panel, Series, Table
 from ..dynamics.interface import opening_parts
 from ..dynamics.model import Model
@@ -25,7 +25,7 @@ from ..status import Status
 from . import Info
 
 INFO = Info(
-    timed=("fms_reference --set stator.misalignment=0", 14),
+    timed=("fms_reference --set stator.misalignment=0", 1),
     asks="When do the faces first touch?",
     refuses=("secondary-seal",),
     # Of the key itself the answer knows the unit.
@@ -145,15 +145,13 @@ def onset(scenario, point: dict) -> dict:
         ended = follower.path and follower.path[-1]["forcing"] == limit
         return {**result, **follower.told(), **(beyond if ended else {"failed": str(reason)})}
     clearance = follower.path[-1]["clearance"]
-    # The path's chord iterations keep one monodromy; the verdict at the onset needs its own.
-    monodromy = Shooter(scene(value), 1e-7, tight=1e-10).monodromy(follower.start)
     result |= {
         "nonlinear": value,
         "ratio": value / formula,
         "radius": follower.path[-1]["radius"],
         "start": [float(x) for x in follower.start],
         "axial_opening": follower.path[-1]["axial"] / clearance,
-        "multiplier": float(np.max(np.abs(np.linalg.eigvals(monodromy)))),
+        "multiplier": follower.multiplier(),
         **follower.told(),
     }
     if point["floor"]:
@@ -280,6 +278,8 @@ def _tables(numbers) -> list[Table]:
 
 def _notes(numbers) -> list[str]:
     """Whether the orbit at the onset is one that the seal keeps, and how far orbits were followed."""
+    if numbers["nonlinear"] and numbers.get("multiplier") is None:
+        return ["Whether the seal keeps the orbit at the onset is not known: the film stores."]
     if (numbers.get("multiplier") or 0.0) > 1.0:
         return ["The orbit at the onset is unstable: the seal leaves it before it touches."]
     if "failed" in numbers and numbers.get("path"):

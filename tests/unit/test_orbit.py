@@ -9,7 +9,7 @@ from scenes import fmr, fms, fmsr, free_ring, started
 
 import sealdyn
 from sealdyn.analysis import shooting
-from sealdyn.analysis.shooting import NoOrbit, Shooter
+from sealdyn.analysis.shooting import ForcedWave, NoOrbit, NotOneSpeed, Shooter
 from sealdyn.scene.excitation import Shaft, Whirl
 from sealdyn.simulation.selection import choose_method
 from sealdyn.solvers.contract import Recorder
@@ -116,3 +116,54 @@ def test_a_trial_that_closes_the_film_is_told_from_a_stiff_film(monkeypatch):
     with pytest.raises(NoOrbit) as given_up:
         shooter.flow(closed)
     assert given_up.value.film < shooting.CLOSED and shooter.method == "dop853"
+
+
+# --- points of the forcing's frame ---------------------------------------------------------------------
+
+ONE_SPEED = {
+    "fms, runout": fms(own=0.0),
+    "fms, misalignment": fms(runout=0.0),
+    "fmr, misalignment of its own": fmr(fixed=0.0),
+    "fmr, above its threshold": fmr(fixed=0.0, speed=9000.0),
+    "fmsr, misalignment of the rotor": fmsr(fixed=0.0),
+}
+
+
+@pytest.mark.parametrize("name", ONE_SPEED)
+def test_what_is_forced_at_one_speed_is_a_point_of_its_frame(name):
+    scene = ONE_SPEED[name]
+    wave, shooter = ForcedWave(scene), Shooter(scene)
+    point, orbit = wave.find(), shooter.find()
+    assert point.start == pytest.approx(orbit.start, abs=1e-9 * np.max(shooter.scales))
+    assert point.extremes["h_min"]["value"] == pytest.approx(orbit.extremes["h_min"]["value"], rel=1e-9)
+    assert wave.multiplier(point) == pytest.approx(np.max(np.abs(orbit.multipliers)), rel=1e-4)
+
+
+def apart(forced, angles):
+    """How far, in units of the scales, a gas film's point is from where a run in time is after 30 turns."""
+    values = ["rotor.runout=0", "stator.misalignment=0", forced, f"film.gas_reynolds.cells=[4, {angles}]"]
+    scene = sealdyn.read_scenario(SCENARIOS / "gas_reynolds_reference.toml", values).scene
+    wave = ForcedWave(scene, 1e-7)
+    point, recorder = wave.find(), Recorder(2.0 * np.pi / scene.shaft.speed)
+    ready = started(scene, 30 * recorder.interval, 1e-7)
+    ready.y0[: len(point.start)] = wave.guess()
+    ready.segment(0).settle_film(0.0, ready.y0)
+    solve(ready, "ida", 1e-7, recorder)
+    n = ready.model.unknowns.n
+    # It is another than the linear response.
+    assert np.max(np.abs(point.start - wave.guess())[:n] / wave.scales) > 1e-4
+    return np.max(np.abs(recorder.arrays()[1][-1] - point.start[:n]) / wave.scales)
+
+
+def test_a_film_that_stores_turns_with_the_forcing_too():
+    """What stands does so to the tolerance of the run; what turns passes the cells, which err by their square."""
+    assert apart("stator.misalignment=2 mrad", 12) < 1e-7
+    coarse, fine = (apart("rotor.runout=2 mrad", angles) for angles in (12, 24))
+    assert coarse < 3e-4
+    assert coarse / fine == pytest.approx(4.0, rel=0.2)
+
+
+def test_two_speeds_have_no_common_frame():
+    for scene in (fms(), fmr(), replace(fms(own=0.0), shaft=Shaft(speed=1000.0, whirl=[Whirl(ratio=0.5, angle=1e-6)]))):
+        with pytest.raises(NotOneSpeed):
+            ForcedWave(scene)

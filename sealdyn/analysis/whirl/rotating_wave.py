@@ -127,6 +127,11 @@ class RotatingWave:
 
     def _growth(self, y, frequency, speed) -> float:
         """Largest growth rate (1/s) of disturbances in the turning frame, the neutral one of phase left out."""
+        values = self.disturbances(y, frequency, speed)
+        return float(np.max(np.delete(values, np.argmin(np.abs(values))).real))
+
+    def disturbances(self, y, frequency, speed) -> np.ndarray:
+        """Eigenvalues (1/s) of disturbances in the frame that turns at `frequency` (rad/s)."""
         m, scales = self.model.unknowns.n_mechanical, self.model.scales
         matrix = np.empty((m, m))
         for j in range(m):
@@ -140,8 +145,7 @@ class RotatingWave:
             for a, b in ((i, i + 1), (self.places[i], self.places[i + 1])):
                 matrix[a, b] += frequency
                 matrix[b, a] -= frequency
-        values = np.linalg.eigvals(matrix)
-        return float(np.max(np.delete(values, np.argmin(np.abs(values))).real))
+        return np.linalg.eigvals(matrix)
 
     def onset(self, speed: float):
         """Guess (q, frequency, speed) at zero amplitude: shape (n,) (relative tilt 1) and frequency (rad/s) of the
