@@ -25,7 +25,7 @@ from ..status import Status
 from . import Info
 
 INFO = Info(
-    timed=("fms_reference --set stator.misalignment=0", 1),
+    timed=("fms_reference --set stator.misalignment=0", 2),
     asks="When do the faces first touch?",
     refuses=("secondary-seal",),
     # Of the key itself the answer knows the unit.
