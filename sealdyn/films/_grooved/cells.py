@@ -1,5 +1,5 @@
 """Cells of a film over a pattern around the whole circle, in the frame of the patterned face: the table and the block
-of the film, where its Jacobian has entries, and the film thickness.
+of the film, where its Jacobian has entries, film thickness and pressures.
 
 Nodes, triangles and what hangs on them are those of one pitch (mesh.py), pitch by pitch alike; a floor of the film
 thickness is one of lands, to which the depth of a triangle is added.  In the frame, which has turned by psi, the tilt
@@ -25,8 +25,10 @@ from ...faces.geometry import (
     GX_RATE,
     GY,
     GY_RATE,
+    INNER_PRESSURE,
     INNER_RADIUS,
     MEAN_SPIN,
+    OUTER_PRESSURE,
     ROTOR_ANGLE,
     SPIN_DIFFERENCE,
     STATOR_ANGLE,
@@ -261,3 +263,25 @@ def film_of_triangle(f, s, row, x, y):
     r = row[MIDDLE]
     h = f[CLEARANCE] + s[DZ] + (f[CONING] + s[CONING_CHANGE]) * (r - f[INNER_RADIUS])
     return regularised_thickness(h + r * (x * row[MIDDLE_SIN] - y * row[MIDDLE_COS]), f[FLOOR]) + row[DEPTH]
+
+
+@inner_kernel()
+def pressures(f, s, x, land, p):
+    """Pressures `p` (pitches, nodes) (Pa)."""
+    table, free = node_table(f), int(f[FREE])
+    for k in range(p.shape[0]):
+        for i in range(p.shape[1]):
+            at = int(table[PLACE, i])
+            if at >= 0:
+                p[k, i] = x[k * free + at] / (land[k, i] + table[DEEPER, i] if f[GAS] != 0.0 else 1.0)
+            else:
+                p[k, i] = s[INNER_PRESSURE] if at == -1 else s[OUTER_PRESSURE]
+
+
+@inner_kernel()
+def state(f, s, x):
+    """Film thickness over the lands (m) and pressures (Pa) at the nodes, (pitches, nodes)."""
+    land, p = np.empty((int(f[SECTORS]), int(f[NODES]))), np.empty((int(f[SECTORS]), int(f[NODES])))
+    lands(f, s, land)
+    pressures(f, s, x, land, p)
+    return land, p

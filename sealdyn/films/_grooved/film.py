@@ -6,8 +6,7 @@ cell, so that all that is stored is linear in them; of a liquid, which stores no
 The tilt of the gap state enters as g' = g e^{-i psi}, psi the angle of the patterned face, and the moment leaves as
 M = M' e^{i psi}: steps of an integrator see no groove pass.
 **Source** balance.py; gas_reynolds/balance.py of the unknowns; cells.py has the cells.
-**Valid** as balance.py, with tilts, of 3 pitches and more.  A liquid's film is full: what its pressure falls to is
-told, not cut off.
+**Valid** as balance.py, with tilts, of 3 pitches and more.  A liquid's film is full: where it would tear the run ends.
 """
 
 import math
@@ -66,6 +65,7 @@ from .cells import (
     PLACE,
     PRESSED,
     RADIUS,
+    SCALE,
     SECTORS,
     SHIFTS,
     SLIP,
@@ -82,14 +82,21 @@ from .cells import (
     parameters,
     pattern_of_rows,
     prepared,
+    state,
     tilt_of_sector,
     triangle_table,
     turned,
     unknowns,
 )
 
-UNSOLVED = 1
-STATUS = {UNSOLVED: "no steady pressures of the film over grooves are found"}
+UNSOLVED, TORN = 1, 2
+STATUS = {
+    UNSOLVED: "no steady pressures of the film over grooves are found",
+    TORN: "the liquid over the grooves would tear: its pressure falls below zero, and films there are full",
+}
+# Pressure below zero, as a share of the highest at the edges, at which a liquid's film ends: above it is what a solver
+# tries.
+PULLED = 1e-3
 # Radii and angles to the pitch at which pressures are shown.
 SHOWN_RADII, SHOWN_ANGLES = 25, 12
 # Share of the clearance within which the opening force is that of the clearance itself, not read between others.
@@ -101,28 +108,6 @@ def accepts(table, waves=()) -> str:
     if waves or (table is not None and (table.geometry != "cylindrical" or table.profile is not None or table.pads)):
         return "cylindrical faces without waves, profile and pads"
     return ""
-
-
-@inner_kernel()
-def pressures(f, s, x, land, p):
-    """Pressures `p` (pitches, nodes) (Pa)."""
-    table, free = node_table(f), int(f[FREE])
-    for k in range(p.shape[0]):
-        for i in range(p.shape[1]):
-            at = int(table[PLACE, i])
-            if at >= 0:
-                p[k, i] = x[k * free + at] / (land[k, i] + table[DEEPER, i] if f[GAS] != 0.0 else 1.0)
-            else:
-                p[k, i] = s[INNER_PRESSURE] if at == -1 else s[OUTER_PRESSURE]
-
-
-@inner_kernel()
-def state(f, s, x):
-    """Film thickness over the lands (m) and pressures (Pa) at the nodes, (pitches, nodes)."""
-    land, p = np.empty((int(f[SECTORS]), int(f[NODES]))), np.empty((int(f[SECTORS]), int(f[NODES])))
-    lands(f, s, land)
-    pressures(f, s, x, land, p)
-    return land, p
 
 
 @inner_kernel()
@@ -168,6 +153,8 @@ def residual(f, s, x, x_rate, res):
             at = k * free + int(table[PLACE, i])
             if table[PLACE, i] >= 0.0:
                 res[at] = out[k, i] / table[CELL, i] + (x_rate[at] if f[GAS] != 0.0 else rates[k, i])
+                if f[GAS] == 0.0 and p[k, i] < -PULLED * f[SCALE]:
+                    return TORN
     return 0
 
 
@@ -338,6 +325,8 @@ def start(f, s, x) -> int:
     first = (inner + share * (outer - inner))[table[PLACE] >= 0.0] ** (1.0 / power) * held
     if not _settled(one, aligned, first):
         return UNSOLVED
+    if f[GAS] == 0.0 and first.min() < 0.0:
+        return TORN
     if not np.any(s[[GX, GY, GX_RATE, GY_RATE]]):
         x[:] = np.tile(first, int(f[SECTORS]))
         return 0
