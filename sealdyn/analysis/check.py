@@ -9,8 +9,6 @@ from pathlib import Path
 from time import monotonic
 
 from ..closed_form.stability import couette_reynolds
-from ..dynamics.equilibrium import settle
-from ..dynamics.interface import opening_law
 from ..films import film_named, film_names, film_of
 from ..kernel_cache import compiling, kept_kernels, kernel_folder
 from ..radial_seals.followers import closed_form_sentences
@@ -44,8 +42,6 @@ def checked(scenario: Scenario) -> dict:
     """The answer of `sealdyn check --json`, SI.  Raises SceneError and ArchiveError of a run that cannot be made
     ready."""
     found = {"status": Status.OK, "message": "the scene is possible", "scene": scenario.resolved()}
-    if not isinstance(scenario.scene, RadialScene) and grooves_of(scenario.scene)[1]:
-        return found | _over_grooves(scenario)
     run, plan = prepare_run(scenario)
     size = size_of(scenario, plan.count)
     if isinstance(scenario.scene, RadialScene):
@@ -57,45 +53,40 @@ def checked(scenario: Scenario) -> dict:
             "design_rules": radial_rules.findings(scenario),
             "equilibria": [],
         }
-    return found | {
-        "gauge": sorted(scenario.gauge),
-        "model": plain(model_chosen(scenario, run, plan)),
-        "clearance": run.model.clearance,
-        "equilibria": [vars(e) for e in run.model.interface.equilibria],
-        "warnings": [
-            caution.sentence for caution in (*run.cautions, *scene_cautions(scenario, run.model), *_of_heat(run.model))
-        ],
-        "heat": plain(heat_of(run.model.given, run.model.heat)),
-        "design_rules": design_rules.findings(scenario, run.model),
-        "beside_reynolds": reynolds_comparison(run),
-        "size": {key: getattr(size, key) for key in ("turns", "rows", "bytes", "seconds")},
-    }
+    grooves, rough = _over_grooves(scenario.scene, run.model.clearance) if grooves_of(scenario.scene)[1] else ({}, [])
+    return (
+        found
+        | grooves
+        | {
+            "gauge": sorted(scenario.gauge),
+            "model": plain(model_chosen(scenario, run, plan)),
+            "clearance": run.model.clearance,
+            "equilibria": [vars(e) for e in run.model.interface.equilibria],
+            "warnings": rough
+            + [
+                caution.sentence
+                for caution in (*run.cautions, *scene_cautions(scenario, run.model), *_of_heat(run.model))
+            ],
+            "heat": plain(heat_of(run.model.given, run.model.heat)),
+            "design_rules": design_rules.findings(scenario, run.model),
+            "beside_reynolds": reynolds_comparison(run),
+            "size": {key: getattr(size, key) for key in ("turns", "rows", "bytes", "seconds")},
+        }
+    )
 
 
-def _over_grooves(scenario: Scenario) -> dict:
-    """What is known of a scene with grooves, over which no run moves a ring yet."""
+def _over_grooves(scene, clearance: float) -> tuple[dict, list[str]]:
+    """What is known of the grooves of a scene at a clearance (m), and what warns."""
     # Loaded for grooves only.
     from ..films._grooved.aligned import aligned_film
 
-    scene = frozen_at_start(scenario.scene)
-    clearance, _, equilibria, _ = settle(scene, opening_law(scene))
-    film, (face, (one,)) = aligned_film(scene, clearance), grooves_of(scene)
+    film, (face, (one,)) = aligned_film(frozen_at_start(scene), clearance), grooves_of(scene)
     condition, deep = film.fine.film.conditions, float(film.fine.film.h.max())
     sliding = abs(condition.relative_speed) * one.outer_radius
     reynolds = couette_reynolds(highest_density(scene.film), condition.viscosity, sliding, deep)
     rough = [f"perhaps turbulent: Couette Reynolds number {reynolds:.0f} in the grooves"] if reynolds > LAMINAR else []
-    return {
-        "clearance": clearance,
-        "equilibria": [vars(e) for e in equilibria],
-        "grooves": {
-            "face": face,
-            "pumping": film.pumping,
-            "depth_over_film": one.depth / clearance,
-            "reynolds_number": reynolds,
-        },
-        "warnings": unit_warnings(scenario) + rough,
-        "design_rules": [],
-    }
+    known = {"face": face, "pumping": film.pumping, "depth_over_film": one.depth / clearance}
+    return {"grooves": known | {"reynolds_number": reynolds}}, rough
 
 
 def _of_heat(model) -> list:

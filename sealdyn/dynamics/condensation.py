@@ -167,6 +167,24 @@ class LinearFilm:
             force_by_gap[:, :3], force_by_gap[:, 3:], unknowns.scales, unknowns.around,
         )  # fmt: skip
 
+    def seen_from_rest(self, speed: float) -> "LinearFilm":
+        """The same film in the inertial frame, of one about an aligned state in a frame that turns at a speed (rad/s)
+        and lies at its angle zero: mean, cosine and sine of its sectors, which are alike.
+
+        **Source** derived here: cosine plus i sine of the sectors' unknowns are c' = c e^{-i speed t}, whose rates are
+        those of c less i speed c; what hangs on gaps and their rates does so at the angle zero."""
+        from scipy.sparse import csc_array, eye_array, kron
+
+        sectors, each = self.around or (1, len(self.scales))
+        back = (turned := _harmonics(sectors, each, 1)).T
+        by_x, by_rate = ((back @ part @ turned).tocsc() for part in (self.by_x, self.by_rate))
+        # i on cosine and sine of each unknown.
+        ahead = csc_array(kron(csc_array([[0.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]), eye_array(each)))
+        return LinearFilm(
+            (by_x - speed * by_rate @ ahead).tocsc(), by_rate, back @ self.by_gap, back @ self.by_gap_rate,
+            self.force_by_x @ turned, self.force_by_gap, self.force_by_gap_rate, np.tile(self.scales[:each], 3),
+        )  # fmt: skip
+
     @cached_property
     def few(self) -> "LinearFilm":
         """The same film in those combinations of its unknowns that a gap moves, where its sectors are alike; itself

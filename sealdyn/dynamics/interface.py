@@ -113,6 +113,11 @@ class Interface:
         or there are none."""
         return self.film.grid_accuracy(self._table_used) if self.film.grid_accuracy else None
 
+    @property
+    def cell_order(self) -> float:
+        """Order of the cells' error."""
+        return self.film.cell_order(self._table_used) if self.film.cell_order else 2.0
+
     def halved(self):
         """The Film table with half the cells of this one's."""
         return self.film.halved(self._table_used)
@@ -232,7 +237,8 @@ class Interface:
     def linear_film(self, s, steps) -> LinearFilm:
         """A film with unknowns about a gap state, these steady; `steps` as in condensation.moved_gaps."""
         f, unknowns = self.whole
-        return LinearFilm.about(FilmDerivatives(self.film, unknowns, f), s, self.steady(f, s), steps)
+        found = LinearFilm.about(FilmDerivatives(self.film, unknowns, f), s, self.steady(f, s), steps)
+        return found if self.film.frame is None else found.seen_from_rest(self.film.frame(f, s))
 
     def about(self, s, steps, omega=0.0):
         """Stiffness and damping matrices (3, 3) of film and asperities about a gap state, `steps` as in
@@ -281,10 +287,11 @@ def opening_law(scene, film=None):
 def opening_parts(scene, film=None):
     """Function `forces(clearance, p_i, p_o)` (N, N): opening force of the film, with the floor of rough faces, and of
     touching asperities, of aligned faces at rest (clearance in m, pressures in Pa); by a `film`, or the scene's own."""
-    if grooves_of(scene)[1]:
-        from ..films._grooved.aligned import OpeningForce
+    if grooves_of(scene)[1] and film is None:
+        # Nearer than the mesh of a run.
+        from ..films._grooved.aligned import extrapolated_force
 
-        return OpeningForce(scene).parts
+        return extrapolated_force(scene).parts
     film = lender(scene, film_of(scene, film))
     table, surfaces = coned(replace(scene, film=prepared(scene, film))), {}
     if waves_of(scene) and film.standing_waves:
@@ -406,7 +413,8 @@ def with_cells(scene, film):
     """The `Film` table of a scene with enough cells for what `film` is asked for; cells that are given stay.
     Raises SceneError where the seal has no balance, and for more cells than are looked for."""
     table = film.prepared(scene)
-    return table if film.cells_are_given(scene.film) else _searched(Asked(scene, film))
+    given = film.cells_are_given is None or film.cells_are_given(scene.film)
+    return table if given else _searched(Asked(scene, film))
 
 
 @lru_cache(maxsize=REMEMBERED)

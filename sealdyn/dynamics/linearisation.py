@@ -7,7 +7,7 @@ import numpy as np
 from ..faces.film_thickness import h_min
 from ..faces.geometry import COLLAPSE, DZ, FORCE, GX, GY
 from ..scene.film import follows_speed
-from ..scene.patterns import waves_of
+from ..scene.patterns import grooves_of, waves_of
 from ..scene.rings import ROTOR, STATOR
 from ..scene.scene import SceneError
 from .equilibrium import axial_shift
@@ -30,18 +30,18 @@ def linear_scene(model, interval, speed: float | None = None, shift: float | Non
     **Source** a film meets the mean spin wm only beside the rate of the tilt, g' - i wm g (Green 1989, eq. 2): at
     another speed it needs no other linearisation.
     **Valid** no floor of the pressure that small motion meets, no waves, which have a wedge of their own, and neither
-    inertia of the fluid nor coning that follows the speed, which move the gap with it: such a film is linearised at
-    every speed.  Raises SceneError at a speed at which no aligned film holds the closing force.
+    inertia of the fluid, grooves nor coning that follows the speed, which move the gap with it: such a film is
+    linearised at every speed.  Raises SceneError at a speed at which no aligned film holds the closing force.
     """
     w_r = constant_and_slope(model.scene.shaft.speed, interval)[0] if speed is None else speed
     w_s = constant_and_slope(model.scene.stator.speed, interval)[0]
     resting = shift is None and model.unknowns.faces_tilt
     if shift is None:
-        if speed is not None and moves_with_speed(model.given.film):
+        if speed is not None and moves_with_speed(model.given):
             shift, balanced = axial_shift(model, interval, speed)
             if not balanced:
                 found = f"{speed:g} rad/s, at which no film holds the closing force"
-                raise SceneError("shaft.speed", found, "a speed at which inertia and coning leave such a film")
+                raise SceneError("shaft.speed", found, "a speed at which inertia, coning and grooves leave such a film")
         else:
             shift = model.axial_shift(interval)
     interface, spin, film, rest = model.interface, 0.5 * (w_r + w_s), None, None
@@ -128,12 +128,13 @@ def linear_in_speed(model, interval=None) -> bool:
     """Whether the matrices at any shaft speed, the rest as at an interval's start, follow from one linearisation of the
     film."""
     plain = model.interface.floor_is_clear(interval) and model.interface.unknowns is None
-    return plain and not moves_with_speed(model.given.film) and not waves_of(model.scene)
+    return plain and not moves_with_speed(model.given) and not waves_of(model.scene)
 
 
-def moves_with_speed(film) -> bool:
-    """Whether the aligned gap of a `Film` is another at another speed."""
-    return film.inertia or follows_speed(film) or film.heat is not None
+def moves_with_speed(scene) -> bool:
+    """Whether the aligned gap of a scene is another at another speed."""
+    film = scene.film
+    return film.inertia or follows_speed(film) or film.heat is not None or bool(grooves_of(scene)[1])
 
 
 def whirl_over_speed(model, interval):

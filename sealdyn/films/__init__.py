@@ -7,6 +7,7 @@ kernels of films that are not chosen are neither loaded nor compiled.
 
 import importlib
 import pkgutil
+from dataclasses import replace
 from functools import cache
 
 from ..numerics.piecewise_linear import points
@@ -81,25 +82,29 @@ def film_names(table=None, waves=()) -> list[str]:
     return sorted(able)
 
 
-def refuse_grooves(scene) -> None:
-    """Raises SceneError for grooves in a face, over which no film moves rings yet."""
-    if ring := grooves_of(scene)[0]:
-        served = "none, or one of the studies equilibrium, load-support, stribeck and coefficients"
-        raise SceneError(f"{ring}.grooves", "grooves in a face", f"{served}: nothing else reckons with grooves yet")
+def _over_grooves(film: Film, scene) -> Film:
+    """The film over the grooves of a scene that this one becomes there.  Raises SceneError where it does not."""
+    if film.patterned is None:
+        key, expected = f"{grooves_of(scene)[0]}.grooves", 'film.model = "gas_reynolds" or "reynolds" of a liquid'
+        raise SceneError(key, f'grooves, with film.model = "{film.name}"', expected)
+    found = importlib.import_module(film.patterned).FILM
+    return replace(found, name=film.name, fidelity=film.fidelity, fluids=film.fluids, patterned=film.patterned)
 
 
 def film_of(scene, film: Film | None = None) -> Film:
     """The film that a scene (or what has its tables) asks for, or the `film` given instead; "auto" is the highest
     that takes the scene's faces, until a choice is certified.  Raises SceneError where it cannot take them."""
     table, waves = scene.film, waves_of(scene)
-    refuse_grooves(scene)
     if film is None:
         able, name = film_names(table, waves), table.model
-        if name == "auto":
+        if name == "auto" and grooves_of(scene)[1]:
+            name = "reynolds" if table.gas is None else "gas_reynolds"
+        elif name == "auto":
             name = max(able, key=lambda n: _offer(n).fidelity, default=None)
         if name is None or limits(_film(name), table, waves):
             raise _no_film(table, waves, able)
         film = film_named(name, table, scene.contact is not None)
+        film = _over_grooves(film, scene) if grooves_of(scene)[1] else film
     elif limits(film, table, waves):
         raise SceneError(
             "film", f"faces or a fluid that the film {film.name} does not take", limits(film, table, waves)

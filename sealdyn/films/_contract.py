@@ -123,6 +123,7 @@ class Film:
     `floored`          import path of the module whose FILM is this film for tables with a floor of the pressure; a
                        path, so that what it compiles is not loaded without one.
     `rough`            the Film that is this film between rough faces, which may meet.
+    `patterned`        import path of the module whose FILM is this film between faces of which one has grooves.
     `matrices(f, s)`   stiffness (N/m) and damping (N s/m), each (3, 3), on (dz, g_x, g_y) at a gap state; without it
                        they are differences of the force.
     `constant`         whether its stiffness and damping are given numbers, whatever the gap: no law of a film, so that
@@ -171,12 +172,14 @@ class Film:
     `for_modes(f)`     changes a block for linearising: rates that the film has for a solver's sake are infinite in it,
                        and no modes.
     `whole(table)`     the table of the whole circle where a part of it stands for all.
-    `prepared(scene)`  the table with what the rest of the scene decides of it; beside it `cells_are_given(table)`, and
-                       `doubled(table, times)`, the table with twice the cells so many times, for the search of how many
-                       are needed (dynamics/interface.py).
+    `frame(f, s)`      speed (rad/s) of the frame in which the unknowns stand, in `around` sectors alike, of a film with
+                       a pattern that turns; its aligned state is steady there.
+    `prepared(scene)`  the table with what the rest of the scene decides of it; beside it, of a film whose cells are
+                       looked for, `cells_are_given(table)`, and `doubled(table, times)`, the table with twice the cells
+                       so many times (dynamics/interface.py).
     `grid_accuracy(table)`
         the relative error that its cells may have, beside the accuracy of a run.
-    `halved(table)`    the table with half the cells, which err four times as much.
+    `halved(table)`    the table with half the cells, which err four times as much, or two to the `cell_order(table)`.
 
     Its stiffness and damping follow by condensation (dynamics/condensation.py); where some unknowns are differential
     they hang on the frequency, and modes and responses have them at their own (dynamics/film_modes.py).
@@ -198,6 +201,7 @@ class Film:
     status: dict[int, str] = field(default_factory=dict)
     floored: str | None = None
     rough: Film | None = None
+    patterned: str | None = None
     matrices: Callable | None = None
     constant: bool = False
     opening_slots: tuple[int, int] | None = None
@@ -221,11 +225,13 @@ class Film:
     line_load: Callable | None = None
     for_modes: Callable | None = None
     whole: Callable | None = None
+    frame: Callable | None = None
     prepared: Callable | None = None
     cells_are_given: Callable | None = None
     doubled: Callable | None = None
     grid_accuracy: Callable | None = None
     halved: Callable | None = None
+    cell_order: Callable | None = None
 
 
 def force_over_clearance(table, f, s, solve) -> Callable:

@@ -88,8 +88,6 @@ def resolved_lines(found: dict) -> list[str]:
     if found.get("gauge"):
         given = " and ".join(found["gauge"])
         out.append(f"# pressures are absolute: {given}, given as gauge, with the 1.01325 bar of the air")
-    if "grooves" in found:
-        return out + _grooved_lines(found) + [f"# WARNING {warning}" for warning in found["warnings"]]
     model = found["model"]
     if "closed_form" in found:
         out.append(f"# {model['followers']} followers; solver {model['solver']}")
@@ -98,6 +96,7 @@ def resolved_lines(found: dict) -> list[str]:
         return out + [f"# {line}" for line in _rule_lines(found["design_rules"])]
     out.append(f"# {model['film']} film; unknowns {', '.join(model['unknowns'])}; solver {model['solver']}")
     out += [f"# {reason}" for reason in model["reasons"]]
+    out += [_grooved_line(found)] if "grooves" in found else []
     for root in found["equilibria"]:
         kind = "stable" if root["stable"] else "not stable by the film alone"
         what = "stiffness of film and asperities" if found["scene"]["contact"] else "film stiffness"
@@ -111,17 +110,14 @@ def resolved_lines(found: dict) -> list[str]:
     return out + [f"# {line}" for line in _rule_lines(found["design_rules"])]
 
 
-def _grooved_lines(found) -> list[str]:
+def _grooved_line(found) -> str:
     """The aligned film over grooves."""
     grooves, clearance = found["grooves"], in_words("clearance", found["clearance"])
     pumped = f", which pump {grooves['pumping']}" if grooves["pumping"] else ""
     deep = (
         f"depth {grooves['depth_over_film']:.3g} times that, Couette Reynolds number {grooves['reynolds_number']:.3g}"
     )
-    return [
-        f"# aligned film over the grooves of the {grooves['face']}{pumped}: {clearance}, {deep}",
-        "# no run moves rings over grooves yet; sealdyn study coefficients has stiffness, damping and roots",
-    ]
+    return f"# aligned film over the grooves of the {grooves['face']}{pumped}: {clearance}, {deep}"
 
 
 def _heated_lines(heat) -> list[str]:

@@ -16,7 +16,6 @@ from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene.application import Application, RadialApplication, application_errors
 from ..scene.checks import scene_errors
 from ..scene.excitation import Motion
-from ..scene.patterns import grooves_of
 from ..scene.radial import RADIAL, RadialScene, radial_errors
 from ..scene.rings import INERTIAL, RING_NAMES, with_inertia
 from ..scene.scene import Scene, SceneError
@@ -190,8 +189,7 @@ def _impossible(file: ScenarioFile) -> list[SceneError]:
         wrong = application_errors(file.application) + unknown_rules(file.application.acknowledge)
         bad += [SceneError(f"application.{key}", found, expected) for key, found, expected in wrong]
     try:
-        # Over grooves no film runs in time yet; some studies have one of their own.
-        _ = bad or grooves_of(file)[1] or film_of(file)
+        _ = bad or film_of(file)
     except SceneError as error:
         bad.append(error)
     return bad

@@ -192,6 +192,8 @@ class Reynolds:
     """Where the film tears at `cavitation_pressure`, with its liquid kept; or never."""
     roughness: Literal["christensen", "none"] = "christensen"
     """Whether the film flows between the asperities of [contact]."""
+    columns: int = 8
+    """Over grooves, in place of cells: columns of triangles to a pitch."""
     sectors: int | None = None
     """Alike sectors of the circle, one of which is computed; without it what waves have in common if nothing tilts."""
 

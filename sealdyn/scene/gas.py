@@ -85,6 +85,8 @@ class GasReynolds:
     """First-order slip at the faces: flow grows by 1 + 6 Kn."""
     cells: tuple[int, int] = (12, 48)
     """Cells over the radius and around the circle."""
+    columns: int = 8
+    """Over grooves, in place of `cells`: columns of triangles to a pitch."""
 
 
 def gas_of(film) -> Gas | None:

@@ -230,9 +230,10 @@ def _interruption(asked: float, outcome: Outcome) -> tuple[dict, Outcome]:
     return no_certificate(asked, "interrupted while the run was done once more"), outcome
 
 
-def _so_many(error: float | None, wanted: float) -> str:
-    """How many times the cells there are bring their error, of second order, to what is wanted, in words."""
-    return f", some {(error / wanted) ** 0.5:.2g} times as many each way" if error and math.isfinite(error) else ""
+def _so_many(error: float | None, wanted: float, order: float) -> str:
+    """How many times the cells there are bring their error, of an order, to what is wanted, in words."""
+    known = error and math.isfinite(error)
+    return f", some {(error / wanted) ** (1.0 / order):.2g} times as many each way" if known else ""
 
 
 def _by_film(run: RunState, by_model: float | None, cells) -> tuple[float | None, float | None, str]:
@@ -276,8 +277,9 @@ def certify(
     by_cells = grid = None
     radial = isinstance(run.model.scene, RadialScene)
     if not radial:
+        interface = run.model.interface
         by_model, by_cells, sentence = _by_film(run, by_model, cells)
-        grid = run.model.interface.grid_accuracy
+        grid = interface.grid_accuracy
         parts.append(sentence)
     known = [error for error in (by_solver, by_model) if error is not None]
     asked = run.model.accuracy
@@ -289,11 +291,12 @@ def certify(
         since = f" from {until:.4g} s on" if until is not None else ""
         cure = CURE.get(method, "a sharper run.accuracy")
         if coarse:
-            more = f"more film.{run.model.interface.name}.cells{_so_many(by_cells, 0.5 * asked)}"
+            key = "cells" if interface.film.frame is None else "columns"
+            more = f"more film.{interface.name}.{key}{_so_many(by_cells, 0.5 * asked, interface.cell_order)}"
             cure = "a higher film rung" if by_cells is None else more
         sentence += f"; NOT met{since}: try {cure}"
     if grid is not None and not by_cells <= grid:
-        more = f"more cells_r and cells_theta{_so_many(by_cells, grid)}"
+        more = f"more cells_r and cells_theta{_so_many(by_cells, grid, 2.0)}"
         sentence += f"; cells NOT as fine as asked: try {more}, or a looser grid_accuracy"
     return Certificate(asked, by_solver, by_model, sentence, until, by_cells if grid is not None else None, grid)
 

@@ -273,17 +273,13 @@ def _turning_state(run) -> np.ndarray:
     return s
 
 
-# The difference to half the cells, over this, is the error of all of them.
-RICHARDSON = 3.0
-
-
 def cell_error(run: RunState) -> float | None:
     """Relative error of the film's cells, the largest of force, moment and leakage on the scales of the certificate, of
     the film at rest at the gap where the run began and where it ended; None of a film that has none to halve, or no
     steady pressures there.
 
-    **Source** Richardson (1911), *Phil. Trans. R. Soc. A* 210, 307: what halving changes, over 2^2 - 1, is the error of
-    a method of second order.
+    **Source** Richardson (1911), *Phil. Trans. R. Soc. A* 210, 307: what halving changes, over 2^p - 1, is the error of
+    a method of order p.
     """
     model = run.model
     film, f = model.observed
@@ -303,7 +299,7 @@ def cell_error(run: RunState) -> float | None:
             still = np.zeros(2 * scales.n)
             loads.append([[*still, s[FORCE], s[MOMENT_X], s[MOMENT_Y], s[FLOW_INNER], 0.0]])
         worst = max(worst, scales.errors(*map(np.array, loads[::-1])).max())
-    return float(worst) / RICHARDSON
+    return float(worst) / (2.0**model.interface.cell_order - 1.0)
 
 
 def steady_tilt(model: Model) -> tuple[complex, float, str]:

@@ -8,7 +8,7 @@ from ..dynamics import modes, stability_thresholds
 from ..dynamics.intervals import constant_and_slope
 from ..dynamics.linearisation import moves_with_speed, whirl_over_speed
 from ..dynamics.stability_thresholds import neutral_speeds
-from ..scene.patterns import waves_of
+from ..scene.patterns import grooves_of, waves_of
 from ..scene.rings import ROTOR, STATOR
 from ..scene.scene import SceneError
 
@@ -35,12 +35,13 @@ def stability(model, interval, linear, speeds: bool, failed: list[str] | None = 
     """Verdict, whirl ratio of the least damped tilt mode, growth rate and its uncertainty (1/s), speeds of the shaft
     and of the stator (rad/s), `fastest` that any shaft turns such a face (rad/s), and all modes of the scene `linear`,
     linearised at the interval's start; if `speeds` also `critical_speed`, `thresholds` and `resonance_speeds`, None
-    where it takes too long: a film that stores between wavy faces, or over pads; or where the search has no end, of
-    which `failed` then tells."""
+    where it takes too long: a film that stores between wavy faces, over pads or grooves; or where the search has no
+    end, of which `failed` then tells."""
     found = linear.modes()
     speed = linear.rings[ROTOR].spin
     searched, failed = {}, [] if failed is None else failed
-    if speeds and model.interface.stores and (waves_of(model.scene) or model.scene.film.pads):
+    patterned = waves_of(model.scene) or model.scene.film.pads or grooves_of(model.scene)[1]
+    if speeds and model.interface.stores and patterned:
         # Seconds at every speed: each way that the gap may move meets the film in its own way.
         searched = {"speeds_held": None, "critical_speed": None, "thresholds": None, "resonance_speeds": None}
     elif speeds:
@@ -134,7 +135,7 @@ def held_speeds(model, interval, low: float, high: float) -> tuple[float, float]
     """The part of [low, high] (rad/s, without sign) in which an aligned film holds the closing force as it does at the
     shaft's speed: inertia and coning that follow the speed leave none far from it.  Of a range beyond that the last
     speed towards it that has one, twice."""
-    if not moves_with_speed(model.given.film):
+    if not moves_with_speed(model.given):
         return low, high
     spin = model.linear_scene(interval).rings[ROTOR].spin
     direction, own = -1.0 if spin < 0.0 else 1.0, abs(spin) or low

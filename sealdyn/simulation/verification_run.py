@@ -38,8 +38,8 @@ SHARPER_AT_SECOND = 8.0
 JUMP_QUANTILE = 0.99
 # The share of its film's error that the second run has, where faces touch.
 SHARPER_FILM = 0.1
-# Share of what halving the cells changes that counts as their error: a third of it is, of cells small enough.
-CELLS = 0.5
+# What halving the cells changes, over 2^p - 1 of their order p, times this counts as their error.
+CELLS = 1.5
 # Another method where the same one cannot be any sharper.
 OTHER = {"adams": "bdf", "bdf": "radau", "ida": "ida", "dop853": "radau", "radau": "dop853", "trbdf2": "trbdf2"}
 # Methods that crawl where decay is fast: none is tried where BDF was, or would be, chosen for that.
@@ -152,7 +152,7 @@ class Comparison:
         again, rings = RunState(coarse, self.run.duration), model.unknowns.n_mechanical
         again.y0[:rings] = self.run.y0[:rings]
         apart = self._apart(again, method, tolerance, progress, stop, work)
-        return None if apart is None else CELLS * apart
+        return None if apart is None else CELLS * apart / (2.0**model.interface.cell_order - 1.0)
 
     def _apart(self, again, method, tolerance, progress, stop, work) -> np.ndarray | None:
         """How far (m,) this run is from another one, done by `method` with `tolerance`, at each instant."""

@@ -16,7 +16,7 @@ from typing import Any
 from .. import __version__, studies
 from ..answers import as_json, plain
 from ..archive import file_stem, link_target, only_writer, write_study
-from ..films import film_of, refuse_grooves
+from ..films import film_of
 from ..kernel_cache import solvers_digest
 from ..numerics.parallel import Checkpoint, Results, evaluate, processes
 from ..quantities import in_words, reading_in
@@ -25,7 +25,7 @@ from ..scenario.overrides import radius_key
 from ..scenario.reader import Scenario
 from ..scenario.settings import bare_settings, study_settings, without, written_settings
 from ..scene import variants
-from ..scene.patterns import face_orders, faces_tilt, waves_of
+from ..scene.patterns import face_orders, faces_tilt, grooves_of, waves_of
 from ..scene.radial import RadialScene
 from ..scene.scene import SceneError
 from ..simulation.plausibility import declared, kind_of, unusual, usual_of
@@ -207,14 +207,18 @@ def _refuse_seal(name: str, info: Info, scene):
             key, found = "lip" if scene.lip else "circumferential", "a radial seal"
             raise SceneError(key, found, f"a face seal for {study}; of radial ones there are followability and sweep")
         raise SceneError("film", "a face seal", f"[lip] or [circumferential]: {study} is of radial seals")
-    if _is_radial(scene) or info.wavy:
+    if _is_radial(scene):
+        return
+    if (face := grooves_of(scene)[0]) and not info.grooved:
+        expected = f"none: this study ({name}) does not reckon with grooves, as coefficients, campbell and sweep do"
+        raise SceneError(f"{face}.grooves", "grooves in a face", expected)
+    if info.wavy:
         return
     if waves_of(scene):
         expected = f"none: this study ({name}) knows faces that are the same all around{info.of_waves}"
         raise SceneError(_key_of_pattern(scene), "wavy faces", expected)
     if scene.film.pads:
         raise SceneError("film.pads", "pads", f"none: this study ({name}) knows faces that are the same all around")
-    refuse_grooves(scene)
 
 
 def _key_of_pattern(scene) -> str:

@@ -30,6 +30,7 @@ INFO = Info(
     timed=("fmr_reference", 2),
     asks="How stiff is the film, and how does it damp?",
     wavy=True,
+    grooved=True,
     aligned=True,
     units={
         "speed": "rad/s", "frequency": "rad/s", "coning": "rad", "clearance": "m", "tilt": "rad", "axial_opening": "m",

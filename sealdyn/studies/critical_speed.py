@@ -86,7 +86,7 @@ def run(scenario, settings, tools) -> Answer:
     """The threshold by three independent methods, and the whirl beyond it."""
     scene = scenario.scene
     model = free_model(scene, initially(scene.shaft.speed))
-    if moves_with_speed(scene.film):
+    if moves_with_speed(scene):
         # At every speed the same closing force, wherever it then puts the gap.
         force = Closing(balance_ratio=model.closing.balance_ratio, spring_force=initially(model.closing.spring))
         scene = with_values(scene, {"closing": force, "film.clearance": model.clearance})
@@ -108,7 +108,7 @@ def by_formula(model) -> tuple[float | None, str]:
     scene = model.scene
     if model.interface.stores:
         return None, "a film that stores: no published formula"
-    if moves_with_speed(model.given.film):
+    if moves_with_speed(model.given):
         return None, "a gap that moves with the speed: no published formula"
     if model.unknowns.floats[STATOR] and model.unknowns.floats[ROTOR]:
         return None, "both rings float: no published formula"

@@ -36,6 +36,7 @@ INFO = Info(
     timed=("run_in", 2),
     asks="At which clearance does the seal ride?",
     wavy=True,
+    grooved=True,
     aligned=True,
     units={
         **dict.fromkeys(("opening_force", "film_force", "contact_force"), "N"), "stiffness": "N/m", "range": "m",

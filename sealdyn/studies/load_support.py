@@ -21,6 +21,7 @@ INFO = Info(
     timed=("lebeck_n3 --vary contact.roughness=0.1:0.4um:7", 3),
     asks="How much of the load does the film carry?",
     wavy=True,
+    grooved=True,
     aligned=True,
     units={
         **OUTPUTS,

@@ -32,6 +32,7 @@ INFO = Info(
     timed=("pump_seal", 3),
     asks="How does the seal rub over its speed?",
     wavy=True,
+    grooved=True,
     aligned=True,
     units={"speed": "rad/s", **POINT},
     along=dict.fromkeys([*POINT, *(f"unheated/{name}" for name in POINT)], ("speed",)),

@@ -25,6 +25,7 @@ INFO = Info(
     asks="How do the numbers of a run follow a key?",
     seals="any",
     wavy=True,
+    grooved=True,
 )
 # Seconds of a run at least, bytes of its row.
 LEAST, ROW, GIGABYTE = 2e-3, 500, 1e9

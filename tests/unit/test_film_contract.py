@@ -4,6 +4,7 @@ import re
 import subprocess
 import sys
 from dataclasses import MISSING, fields, replace
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -18,7 +19,7 @@ from sealdyn.scene.patterns import Waviness
 from sealdyn.scene.scene import SceneError
 
 FOLDER = Path(sealdyn.films.__file__).parent
-UNKNOWNS = ("start", "residual", "jacobian", "wrench_jacobian", "settle", "between", "line_load", "for_modes")
+UNKNOWNS = ("start", "residual", "jacobian", "wrench_jacobian", "settle", "between", "line_load", "for_modes", "frame")
 CELLS = ("cells_are_given", "doubled", "grid_accuracy")
 
 
@@ -27,6 +28,8 @@ def variants(film):
     yield film
     if film.rough is not None:
         yield film.rough
+    if film.patterned is not None:
+        yield import_module(film.patterned).FILM
     if film.floored is not None:
         yield film_named(film.name, table(cavitation_pressure=0.0))
 
@@ -36,12 +39,12 @@ def test_every_film_has_a_contract_whose_absent_fields_are_none():
     optional = {f.name: f.default for f in fields(Film) if f.default is not MISSING}
     for name in all_film_names():
         for film in variants(film_named(name)):
-            assert isinstance(film, Film) and film.name == name
+            assert isinstance(film, Film) and film.name in (name, "grooved")
             for field in fields(Film):
                 value = getattr(film, field.name)
                 assert value is not None or optional[field.name] is None, f"{name}.{field.name}"
                 if optional.get(field.name, MISSING) is None and field.name not in (
-                    "generalises", "remark", "floored", "rough", "opening_slots",
+                    "generalises", "remark", "floored", "rough", "patterned", "opening_slots",
                 ):  # fmt: skip
                     assert value is None or callable(value), f"{name}.{field.name}"
 
@@ -52,7 +55,8 @@ def test_what_belongs_together_is_there_together():
             assert (film.unknowns is None) == (film.start is None) == (film.residual is None)
             assert film.unknowns is not None or not any(getattr(film, part) for part in UNKNOWNS)
             assert (film.settle is None) == (film.between is None)
-            assert {getattr(film, part) is None for part in CELLS} == {film.prepared is None}
+            assert len(given := {getattr(film, part) is None for part in CELLS}) == 1
+            assert film.prepared is not None or given == {True}
             assert bool(film.quantities) == (film.grid is not None) == (film.fields is not None)
             assert all(isinstance(quantity, Field) for quantity in film.quantities)
             assert film.fluids and set(film.fluids) <= {"liquid", "gas"}

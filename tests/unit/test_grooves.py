@@ -13,7 +13,7 @@ from sealdyn.analysis.check import checked
 from sealdyn.dynamics.equilibrium import settle
 from sealdyn.dynamics.interface import opening_law
 from sealdyn.films import film_of
-from sealdyn.films._grooved.aligned import OpeningForce, aligned_film
+from sealdyn.films._grooved.aligned import aligned_film, extrapolated_force
 from sealdyn.films._grooved.motion import tilt_law, unstable_roots
 from sealdyn.report.text import resolved_lines
 from sealdyn.scene.checks import scene_errors
@@ -23,7 +23,6 @@ from sealdyn.scene.patterns import Grooves
 from sealdyn.scene.rings import Rotor, Stator, Support
 from sealdyn.scene.scene import Closing, Scene, SceneError
 from sealdyn.scene.variants import counterpart
-from sealdyn.simulation.simulate import simulate_in_memory
 from sealdyn.studies._grooved import flows_over_grooves, modes, ring_of
 
 TEXT = """
@@ -113,17 +112,15 @@ def test_what_no_film_over_grooves_reckons_with(key, scene):
 
 
 @pytest.mark.core
-def test_a_run_is_refused_and_no_film_taken_for_it(scenario):
+def test_the_film_of_grooves_stands_for_the_one_that_is_asked_for(scenario):
     (one,) = scenario.scene.rotor.grooves
     read, meant = ([getattr(row, key) for key in ("depth", "inner_radius", "angle", "share")] for row in (one, SPIRAL))
     assert read == pytest.approx(meant, rel=1e-12) and one.count == 12
-    with pytest.raises(SceneError) as refused:
-        simulate_in_memory(scenario)
-    assert refused.value.key == "rotor.grooves"
+    assert film_of(seal()).name == "gas_reynolds" and film_of(seal()).frame is not None
+    liquid = Film(R_I, R_O, 5e5, 1e5, viscosity=1e-3, clearance=3e-6)
+    assert film_of(seal(liquid, rotor=(), stator=[SPIRAL], floats="rotor")).name == "reynolds"
     with pytest.raises(SceneError):
-        film_of(seal())
-    with pytest.raises(SceneError):
-        film_of(seal(rotor=(), stator=[SPIRAL], floats="rotor"))
+        film_of(seal(replace(GAS, model="gas_dam")))
 
 
 def test_grooves_go_with_their_ring():
@@ -153,7 +150,7 @@ def test_a_film_that_is_not_there_is_told():
 
 
 def test_the_opening_force_between_its_nodes():
-    force, scene = OpeningForce(seal()), seal()
+    force, scene = extrapolated_force(seal()), seal()
     for clearance in (1.7e-6, 3e-6, 8.2e-6):
         exact = aligned_film(scene, clearance, 8).better(lambda one: one.force)[0]
         assert force(clearance, 1e5, 5e5) == pytest.approx(exact, rel=3e-5)

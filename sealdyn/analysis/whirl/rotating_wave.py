@@ -48,7 +48,7 @@ def free_model(scene: Scene, speed: float, accuracy: float = 1e-8) -> Model:
     where the film holds the closing force: a gap that moves with the speed has moved."""
     scene = unforced(scene, speed)
     model = Model(scene, accuracy)
-    shift = model.axial_shift() if moves_with_speed(model.scene.film) else 0.0
+    shift = model.axial_shift() if moves_with_speed(model.scene) else 0.0
     if shift == 0.0:
         return model
     # What holds the film there, the supports' share in it.

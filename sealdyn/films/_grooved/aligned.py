@@ -128,12 +128,11 @@ def aligned_film(scene, clearance: float, columns: int = COLUMNS) -> AlignedFilm
 
 class OpeningForce:
     """Opening force (N) of the aligned film over the clearance, `force(clearance, inner_pressure, outer_pressure)`; NaN
-    where it has no film."""
+    where it has no film.  `with_slope` of the same arguments gives the force and its slope by the logarithm of the
+    clearance (N), NaN where there is none."""
 
-    def __init__(self, scene):
-        self.scene, self.nodes, self.none_below = scene, {}, {}
-        # No clearance makes good for grooves that have no mesh.
-        meshes_of(scene, MANY)
+    def __init__(self, with_slope):
+        self.with_slope, self.nodes, self.none_below = with_slope, {}, {}
 
     def __call__(self, clearance: float, inner_pressure: float, outer_pressure: float) -> float:
         if not THINNEST <= clearance <= WIDEST:
@@ -162,15 +161,26 @@ class OpeningForce:
         # Thinner than one that has no film there is none either.
         if n <= self.none_below.get(pressures, -math.inf):
             return math.nan, math.nan
-        clearance, inner, outer = math.exp(n * STRIDE), *pressures
-        table = replace(self.scene.film, inner_pressure=inner, outer_pressure=outer)
-        try:
-            film = aligned_film(replace(self.scene, film=table), clearance, MANY)
-        except SceneError:
+        force, slope = self.with_slope(math.exp(n * STRIDE), *pressures)
+        if math.isnan(force):
             self.none_below[pressures] = max(n, self.none_below.get(pressures, n))
+        return force, slope * STRIDE
+
+
+def extrapolated_force(scene) -> OpeningForce:
+    """That of a scene, extrapolated from two meshes.  Raises SceneError for grooves that have no mesh: no clearance
+    makes good for it."""
+    meshes_of(scene, MANY)
+
+    def with_slope(clearance, inner, outer):
+        table = replace(scene.film, inner_pressure=inner, outer_pressure=outer)
+        try:
+            film = aligned_film(replace(scene, film=table), clearance, MANY)
+        except SceneError:
             return math.nan, math.nan
-        force = film.better(lambda one: one.force)[0]
-        return force, -film.better(axial_stiffness)[0] * clearance * STRIDE
+        return film.better(lambda one: one.force)[0], -film.better(axial_stiffness)[0] * clearance
+
+    return OpeningForce(with_slope)
 
 
 def axial_stiffness(found: Steady) -> float:

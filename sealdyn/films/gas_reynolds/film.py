@@ -219,6 +219,7 @@ FILM = Film(
     opening_law=opening_law,
     pads=True,
     standing_waves=True,
+    patterned=f"{__package__.rpartition('.')[0]}._grooved.film",
     wrench=wrench,
     flow=flow,
     quantities=(PRESSURE,),

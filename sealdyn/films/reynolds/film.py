@@ -216,6 +216,7 @@ FILM = Film(
     opening_law=opening_law,
     standing_waves=True,
     waves_touch=True,
+    patterned=f"{__package__.rpartition('.')[0]}._grooved.film",
     wrench=wrench,
     flow=flow,
     line_load=line_load,

@@ -155,7 +155,7 @@ class Grid:
 
     def _follows_speed(self) -> bool:
         """Whether the film's coefficients change with speed (those of liquid films with a cone of its own do not)."""
-        if moves_with_speed(self.scene.film):
+        if moves_with_speed(self.scene):
             return True
         ends = [self.model.linear_scene(speed=float(w)) for w in self.axes["shaft.speed"][[0, -1]]]
         return not all(

@@ -222,7 +222,7 @@ def unconditional(scene) -> dict:
     for a film that stores or changes with the speed, of which there is no such formula."""
     nothing = {"limit": None, "inertia_ratio": None, "holds": None}
     model = Model(scene)
-    if arrangement(scene) != "FMR" or model.interface.stores or moves_with_speed(scene.film):
+    if arrangement(scene) != "FMR" or model.interface.stores or moves_with_speed(scene):
         return nothing
     damping = scene.rotor.support.tilt()[1]
     stiffness, film_damping = model.film_matrices()
@@ -338,7 +338,7 @@ def _tables(numbers, total) -> list[Table]:
 def _notes(numbers, scenario, axes, total) -> list[str]:
     """What the map keeps, and which of its points cannot be."""
     notes, possible = [], np.isfinite(total)
-    if moves_with_speed(scenario.scene.film) and scenario.scene.film.clearance is not None:
+    if moves_with_speed(scenario.scene) and scenario.scene.film.clearance is not None:
         notes.append(
             "The critical speed keeps the closing force, and the gap follows the speed; the map keeps the gap."
         )

@@ -104,7 +104,7 @@ def run(scenario, settings, tools) -> Answer:
     numbers = {"speed": speeds.tolist(), "unit": settings.unit, "arrangement": arrangement(scenario.scene)}
     numbers["stator_speed"] = frozen_at_start(scenario.scene).stator.speed
     numbers["own_speed"], numbers["speeds_held"] = own_speed, held
-    numbers["gap_moves"] = moves_with_speed(scenario.scene.film)
+    numbers["gap_moves"] = moves_with_speed(scenario.scene)
     for name, seal in seals.items():
         algebra = curves(speeds, np.array([seal.relative_tilts(w) for w in speeds]).T)
         numbers[name] = dict(algebra)
@@ -236,7 +236,7 @@ def table(seals: dict[str, Arrangement], speed: float, by_formula: bool, rows: l
 
     def best(quantity, name):
         # A formula of the critical speed knows one gap only.
-        moves = quantity == "critical_speed" and moves_with_speed(seals[name].scene.film)
+        moves = quantity == "critical_speed" and moves_with_speed(seals[name].scene)
         return "formula" if by_formula and not moves else "linear_algebra"
 
     return [
@@ -269,7 +269,7 @@ def _critical_speed(seal: Arrangement, road: str, by_formula: bool) -> float | N
         return None
     if road == "linear_algebra":
         return critical_speed(seal.model)
-    if seal.name == "fmsr" or moves_with_speed(seal.scene.film):
+    if seal.name == "fmsr" or moves_with_speed(seal.scene):
         return None
     numbers = seal.tilt_numbers(1.0)
     numbers.pop("speed")
