@@ -48,9 +48,8 @@ def journal_of(out: Path) -> Path:
 
 
 def study_module(name: str):
-    """The study `name` (underscored): its file, or `study.py` in its folder."""
-    found = importlib.import_module(f"{studies.__name__}.{name}")
-    return importlib.import_module(f"{found.__name__}.study") if hasattr(found, "__path__") else found
+    """The study `name` (underscored)."""
+    return importlib.import_module(f"{studies.__name__}.{name}")
 
 
 def study_info(name: str) -> Info:

@@ -27,7 +27,7 @@ from ...numerics.piecewise_linear import PiecewiseLinear
 from ...scene.variants import with_values
 from ...simulation.selection import prepare_run
 from ...solvers.integrate import solve
-from ..work_precision.errors import Sampler
+from ..work_precision.observation import Sampler
 from .plan import tables_end
 from .ramp_run import RampCycle, told
 
