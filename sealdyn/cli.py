@@ -108,7 +108,7 @@ def _studies():
 
 
 def _sources():
-    from .analysis.validation import source_names
+    from .analysis.sources import source_names
 
     return source_names()
 
@@ -126,7 +126,7 @@ def _read(path: Path, overrides):
         with reads(path) if path.suffix == ".h5" else contextlib.nullcontext():
             scenario = read_scenario(path, overrides or ())
         if scenario.study:
-            from .studies._settings import refuse_unknown_studies
+            from .studies._runner import refuse_unknown_studies
 
             refuse_unknown_studies(scenario)
         return scenario
@@ -255,7 +255,7 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
 def _refuse_settings(scenario) -> list[str]:
     """Ends the verb for settings of a study that it does not take; else what is odd in them."""
     from .scenario.errors import ScenarioError
-    from .studies._settings import refuse_settings
+    from .studies._runner import refuse_settings
 
     try:
         return refuse_settings(scenario)
@@ -317,7 +317,7 @@ def new(
 def schema(radial: Annotated[bool, typer.Option("--radial", help="of lip and circumferential seals")] = False):
     """Print the JSON schema of scenario files, for editors."""
     from .scenario.tables import RadialFile, ScenarioFile
-    from .studies._settings import schema_with_studies
+    from .studies._runner import schema_with_studies
 
     print(json.dumps(schema_with_studies(RadialFile if radial else ScenarioFile), indent=2))
 
@@ -325,7 +325,7 @@ def schema(radial: Annotated[bool, typer.Option("--radial", help="of lip and cir
 @app.command("list")
 def list_scenarios(as_json: AsJson = False):
     """Name the scenarios that come with the program, and what each asks."""
-    from .scenario.shipped import examples, shipped_folder, shipped_paths
+    from .scenario.templates import examples, shipped_folder, shipped_paths
 
     folder, found, paths = shipped_folder(), examples(), shipped_paths()
     if as_json:
@@ -498,7 +498,7 @@ def report(
     title: Annotated[str, typer.Option(help="its heading")] = "",
 ):
     """Write one page for a design review: it opens anywhere, without a network."""
-    from .analysis.validation import sources_of_film
+    from .analysis.sources import sources_of_film
     from .report.review import review
 
     if out.suffix not in (".html", ".htm"):
@@ -572,7 +572,7 @@ def validate(
     as_json: AsJson = False,
 ):
     """Compare published numbers with what the program computes: all sources, or one."""
-    from .analysis.validation import checks, report, source_names
+    from .analysis.sources import checks, report, source_names
 
     names = source_names()
     wanted = names if source is None else [source.replace("_", "-")]
@@ -597,7 +597,7 @@ class _StudyCommand(TyperCommand):
         if {"-h", "--help"} & set(args):
             from rich.markup import escape
 
-            from .studies._settings import help_text
+            from .studies._runner import help_text
 
             self.epilog = escape(help_text(next((word for word in args if word[0] != "-"), "")))
         return super().parse_args(context, args)

@@ -16,7 +16,7 @@ from ..kernel_cache import compiling, kept_kernels, kernel_folder
 from ..radial_seals.followers import closed_form_sentences
 from ..scenario.errors import ScenarioError
 from ..scenario.reader import Scenario, read_scenario, with_values
-from ..scenario.shipped import shipped_paths
+from ..scenario.templates import shipped_paths
 from ..scene.gas import highest_density
 from ..scene.patterns import faces_tilt, grooves_of, waves_of
 from ..scene.radial import RadialScene
@@ -57,14 +57,13 @@ def checked(scenario: Scenario) -> dict:
             "design_rules": radial_rules.findings(scenario),
             "equilibria": [],
         }
+    warm = [] if run.model.heat is None else heat_cautions(run.model.given, run.model.heat)
     return found | {
         "gauge": sorted(scenario.gauge),
         "model": plain(model_chosen(scenario, run, plan)),
         "clearance": run.model.clearance,
         "equilibria": [vars(e) for e in run.model.interface.equilibria],
-        "warnings": [
-            caution.sentence for caution in (*run.cautions, *scene_cautions(scenario, run.model), *_of_heat(run.model))
-        ],
+        "warnings": [caution.sentence for caution in (*run.cautions, *scene_cautions(scenario, run.model), *warm)],
         "heat": plain(heat_of(run.model.given, run.model.heat)),
         "design_rules": design_rules.findings(scenario, run.model),
         "beside_reynolds": reynolds_comparison(run),
@@ -96,10 +95,6 @@ def _over_grooves(scenario: Scenario) -> dict:
         "warnings": unit_warnings(scenario) + rough,
         "design_rules": [],
     }
-
-
-def _of_heat(model) -> list:
-    return [] if model.heat is None else heat_cautions(model.given, model.heat)
 
 
 def rules_of(scenario: Scenario) -> list[dict]:

@@ -1,7 +1,8 @@
 """Critical speed: the stability threshold of the aligned seal by three independent methods, and the whirl beyond it.
 
 Linear: published formula with the film's own coefficients, eigenvalues, growth of a small disturbance in time.
-Beyond: the family of circular whirls that leaves the threshold (analysis/whirl), and runs in time that must agree.
+Beyond: the family of circular whirls that leaves the threshold (analysis/rotating_wave.py), and runs in time that must
+agree.
 """
 
 from dataclasses import dataclass
@@ -11,18 +12,8 @@ from typing import Literal
 
 import numpy as np
 
-from ..analysis.whirl import (
-    bounded_or_not,
-    branch,
-    compared,
-    contact_tilt_aligned,
-    family_columns,
-    free_model,
-    growth_rate,
-    kind_of,
-    linear_growth,
-    tipping_disturbance,
-)
+from ..analysis.rotating_wave import branch, compared, contact_tilt_aligned, family_columns, free_model, kind_of
+from ..analysis.whirl_in_time import bounded_or_not, growth_rate, linear_growth, tipping_disturbance
 from ..answers import Answer, Axis, Level, Panel, Series, Table
 from ..closed_form import fmr_critical_speed, fms_critical_speed
 from ..dynamics.linearisation import moves_with_speed
@@ -67,8 +58,6 @@ FATES = {"decays": ("good", "dies out"), "bounded": ("blue", "bounded"), "contac
 @dataclass(frozen=True)
 class Settings:
     """How growth is measured in time, and whether to go beyond linear."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     method: Literal["adams", "bdf", "dop853", "radau"] = "adams"
     """Integrator."""

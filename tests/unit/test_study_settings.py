@@ -20,8 +20,7 @@ from sealdyn.studies import (
     sweep,
     work_precision,
 )
-from sealdyn.studies._runner import study_info, study_module
-from sealdyn.studies._settings import help_text, schema_with_studies, settings_of
+from sealdyn.studies._runner import help_text, schema_with_studies, settings_of, study_info, study_module
 
 SCENARIO = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
 

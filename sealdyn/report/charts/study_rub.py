@@ -8,8 +8,7 @@ from ...archive import read_study
 from ...quantities import in_words
 from ...status import Status
 from ..panels import study_sheet
-from .page import save
-from .palette import CYCLED
+from .page import CYCLED, save
 from .poincare import around
 
 # Names of keys on the axis, and their SI units.

@@ -10,8 +10,24 @@ from matplotlib.ticker import LogLocator, NullFormatter
 from ...archive import read_study
 from ...status import Status
 from ..text import question_of, solvers_words
-from .page import absent, look, save, shortened, study_page
-from .palette import BLUE, CONTACT, GREEN, GREY, LOOKS, ORANGE, PALE, PURPLE, SHORT, SKY, VERMILLION
+from .page import (
+    BLUE,
+    CONTACT,
+    GREEN,
+    GREY,
+    LOOKS,
+    ORANGE,
+    PALE,
+    PURPLE,
+    SHORT,
+    SKY,
+    VERMILLION,
+    absent,
+    look,
+    save,
+    shortened,
+    study_page,
+)
 from .record import MILLISECONDS
 
 # Of a cost: how many of its unit make one.

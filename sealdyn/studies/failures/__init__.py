@@ -9,7 +9,7 @@ import importlib
 import pkgutil
 from dataclasses import dataclass
 
-from ...answers import Answer, Axis, Panel, Series, Table
+from ...answers import Answer, Axis, Panel, Series, Table, table_of
 from ...scenario.errors import ScenarioError
 from ...scene.scene import SceneError
 from ...simulation.selection import prepare_run
@@ -104,12 +104,11 @@ def chosen_for(scenario, names) -> tuple[dict, dict[str, str]]:
 
 def _tables(numbers) -> list[Table]:
     """Each method that fails beside the one that survives; then the places this seal comes to."""
-    columns = [("1", name) for name in ("item", "place", "fails", "error", "survives", "error", "unit")]
-    names = ("item", "title", "failing", "failing_error", "survivor", "survivor_error", "unit")
-    rows = [[row.get(name) for name in names] for row in numbers["rows"]]
-    met = [[row["item"], row["place"], row["met"]] for row in numbers["met"]]
-    return [Table("places", columns, rows),
-            Table("met", [("1", "item"), ("1", "this seal comes to"), ("1", "since")], met)]  # fmt: skip
+    names = {"item": "item", "title": "place", "failing": "fails", "failing_error": "error", "survivor": "survives",
+             "survivor_error": "error", "unit": "unit"}  # fmt: skip
+    met = (("1", "item", "item"), ("1", "this seal comes to", "place"), ("1", "since", "met"))
+    return [table_of("places", [("1", words, key) for key, words in names.items()], numbers["rows"]),
+            table_of("met", met, numbers["met"])]  # fmt: skip
 
 
 def _found(numbers) -> str:

@@ -13,7 +13,7 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
-from ...answers import Answer, Table
+from ...answers import Answer, Table, table_of
 from ...numerics.order_spectrum import FOLDED
 from ...numerics.piecewise_linear import PiecewiseLinear
 from ...quantities import in_words
@@ -22,8 +22,8 @@ from ...scene.variants import part, with_values
 from ...status import Status
 from ...units import Angle, Time
 from .. import Info
-from .load_ramp import load_trip, memory, overshoot, quasi_static
 from .plan import SPEED, checked, jumps, planned, rate_unit, rates_of, tables_end, value_of, wrong
+from .ramp_run import load_trip, memory, overshoot, quasi_static
 from .speed_ramp import passage, short_pass
 
 # Rates of the curve, over the rate at which linear theory just touches; how closely the touching rate is located.
@@ -247,16 +247,14 @@ def _speed_table(answer) -> Table:
              ("speed", "down", "down"), ("speed", "read to", "read"), ("share", "from linear", "departure"),
              ("speed", "closest at", "h_min_speed"), ("1", "going", "h_min_way"), *ENDS,
              ("1", "failed", "failed"))  # fmt: skip
-    rows = []
-    for row in answer["rows"]:
-        told = dict(row)
+    rows = [dict(row) for row in answer["rows"]]
+    for row, told in zip(answer["rows"], rows, strict=True):
         if "failed" not in row:
             far = [row[way]["departure"] for way in WAYS if row[way]["departure"] is not None]
             told |= {way: row[way]["peak"][0] if row[way]["peak"] else None for way in WAYS}
             told |= {"departure": max(far, default=None)}
             told |= {"read": row["speed_in_window"] / 4 if any(row[way]["peak"] for way in WAYS) else None}
-        rows.append([told.get(key) for *_, key in names])
-    return Table("ramps", [name[:2] for name in names], rows)
+    return table_of("ramps", names, rows)
 
 
 def _growth_tables(answer) -> list[Table]:

@@ -14,6 +14,7 @@ from ...closed_form import ludwig_allen as closed
 from ...dynamics.model import Model
 from ...dynamics.warm_state import at_work
 from ...numerics.piecewise_linear import initially
+from ...scene.rings import INERTIAL
 from ...status import Status
 from .. import Info
 from . import released as free
@@ -161,7 +162,8 @@ def balance(scene, point: dict) -> dict:
 def release(scene, point: dict) -> dict:
     """What becomes of the released ring at one force ratio."""
     ring, q = free.ring_of(scene), point["force_ratio"]
-    scene = replace(scene, rotor=_heavier(scene.rotor, point["inertia"]))
+    heavier = {name: point["inertia"] * getattr(scene.rotor, name) for name in INERTIAL}
+    scene = replace(scene, rotor=replace(scene.rotor, **heavier))
     guide = None if point["support"] == OWN else closed.closed_form_guide(q)
     scene = free.started(free.with_force_ratio(scene, q, guide), point["start"])
     # Landing on the asperities may defeat a method at one accuracy and not at the next.
@@ -191,11 +193,6 @@ def _guide(scene, told, ring) -> float:
     relative = told.amplitude[0] / ring.mean_radius * np.exp(1j * told.direction)
     tilt = abs(initially(scene.stator.misalignment) - relative)
     return float(scene.rotor.support.tilt()[0] * tilt / (ring.mean_radius * ring.spring_force))
-
-
-def _heavier(rotor, factor):
-    return replace(rotor, mass=factor * rotor.mass, transverse_inertia=factor * rotor.transverse_inertia,
-                   polar_inertia=factor * rotor.polar_inertia)  # fmt: skip
 
 
 # --- what is told -----------------------------------------------------------------------------------------

@@ -9,9 +9,9 @@ from pydantic import TypeAdapter, ValidationError
 from scipy.ndimage import distance_transform_cdt
 
 from ... import closed_form as cf
-from ...analysis.whirl import free_model, growth_rate
-from ...analysis.whirl.time_domain import pace
-from ...answers import Answer, Axis, Level, Panel, Series, Table
+from ...analysis.rotating_wave import free_model
+from ...analysis.whirl_in_time import growth_rate, pace
+from ...answers import Answer, Axis, Level, Panel, Series, Table, table_of
 from ...dynamics import modes
 from ...dynamics.linearisation import moves_with_speed
 from ...dynamics.model import Model
@@ -47,8 +47,6 @@ ACCURACY, SHARE = 1e-7, 0.01
 @dataclass(frozen=True)
 class Settings:
     """The map."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     x: str | None = None
     """"key=from:to:count" with any scenario key (SI or with units) or `inertia_ratio` (transverse over polar,
@@ -93,7 +91,8 @@ def si_axis(scenario, words: str, name: str) -> dict:
     found = axis(words, scenario.name, where)
     key, written = found["key"], found["values"]
     holds, unit = _held_by(scenario, where, key)
-    if not 2 <= len(written) <= 100_000 or len(set(written)) < len(written) or not _in_order(written):
+    in_order = sorted(written) in (written, written[::-1])
+    if not 2 <= len(written) <= 100_000 or len(set(written)) < len(written) or not in_order:
         raise ScenarioError(scenario.name, where, f'"{words}"', "2 to 100000 different values, rising or falling")
     ends = [_value(scenario, where, key, holds, text) for text in (found["given"][0], found["given"][-1])]
     if key == INERTIA_RATIO and min(ends) <= 0:
@@ -102,10 +101,6 @@ def si_axis(scenario, words: str, name: str) -> dict:
     shares = (np.array(written) - written[0]) / (written[-1] - written[0])
     values = ends[0] + (ends[1] - ends[0]) * shares
     return {"key": key, "unit": unit, "values": values.tolist()}
-
-
-def _in_order(values) -> bool:
-    return sorted(values) in (values, values[::-1])
 
 
 def _held_by(scenario, where, key):
@@ -328,11 +323,10 @@ def _tables(numbers, total) -> list[Table]:
     names = [("1", "verdict"), ("growth_rate", "growth rate"), ("1", "of the motion"), ("1", "whirl ratio"),
              ("speed", "critical speed"), ("1", "stable at every speed to inertia ratio"), ("1", "its own"),
              ("share", "map stable"), ("share", "neutral")]  # fmt: skip
-    columns = [(x["unit"], x["key"]), (y["unit"], y["key"]), ("growth_rate", "eigenvalues"),
-               ("growth_rate", "in time"), ("growth_rate", "+-"), ("1", "agrees"), ("1", "not confirmed")]  # fmt: skip
-    keys = ("x", "y", "growth_rate", "time_domain", "uncertainty", "agrees", "failed")
-    rows = [[point.get(key) for key in keys] for point in numbers["confirmed"]]
-    return [Table("margins", names, [own]), Table("confirmed in time", columns, rows)]
+    columns = [(x["unit"], x["key"], "x"), (y["unit"], y["key"], "y"), ("growth_rate", "eigenvalues", "growth_rate"),
+               ("growth_rate", "in time", "time_domain"), ("growth_rate", "+-", "uncertainty"),
+               ("1", "agrees", "agrees"), ("1", "not confirmed", "failed")]  # fmt: skip
+    return [Table("margins", names, [own]), table_of("confirmed in time", columns, numbers["confirmed"])]
 
 
 def _notes(numbers, scenario, axes, total) -> list[str]:

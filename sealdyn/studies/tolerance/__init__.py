@@ -5,7 +5,7 @@ from functools import partial
 
 import numpy as np
 
-from ...answers import Answer, Table
+from ...answers import Answer, Table, table_of
 from ...dynamics.run_state import FilmClosed
 from ...numerics.parallel import Together
 from ...quantities import in_words
@@ -16,8 +16,20 @@ from ...simulation.result import START, unit_of
 from ...status import Status
 from .. import Info
 from ..sweep import quantity_of
-from .estimates import Sample, convergence, indices, moments, number, probability, quantiles, tightened
-from .scatter import SCRAMBLES, points, read_correlations, read_scatter
+from .scatter import (
+    SCRAMBLES,
+    Sample,
+    convergence,
+    indices,
+    moments,
+    number,
+    points,
+    probability,
+    quantiles,
+    read_correlations,
+    read_scatter,
+    tightened,
+)
 
 INFO = Info(
     timed=("tolerance", 48),
@@ -289,9 +301,8 @@ def _tables(numbers) -> list[Table]:
              ("1", "from", "total_low"), ("1", "to", "total_high"), ("1", "rank corr.", "rank_correlation"),
              ("share", "sd if halved", "halved"), ("share", "if none", "removed"),
              ("share", "contact if halved", "contact_halved"))  # fmt: skip
-    keys = [[row[key] for *_, key in shown] for row in numbers["tighten"][first]]
     tables = [Table("distribution", columns, rows, of_rows=[quantity_of(name) for name in outputs]),
-              Table(f"keys for {first}", [names[:2] for names in shown], keys)]  # fmt: skip
+              table_of(f"keys for {first}", shown, numbers["tighten"][first])]  # fmt: skip
     total = numbers["sobol"]["total"]
     if total and len(outputs) > 1 and any(total.values()):
         rows = [[row["key"], *(total[name] and total[name][row["key"]] for name in outputs)]

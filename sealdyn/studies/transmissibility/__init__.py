@@ -18,7 +18,6 @@ import numpy as np
 from scipy.optimize import brentq
 
 from ... import closed_form as cf
-from ...analysis.arrangements import SEALS, Arrangement, seals_of, tilting
 from ...answers import Answer, Axis, Level, Panel, Series, Table
 from ...dynamics.linearisation import moves_with_speed
 from ...quantities import in_words, reading_in
@@ -30,7 +29,17 @@ from ...scene.variants import arrangement, frozen_at_start
 from ...simulation.stability import critical_speed, held_speeds
 from ...units import Speed
 from .. import Info
-from .in_time import PHASES, QUANTITIES, curves, phases_apart, points_in_time
+from .arrangements import (
+    PHASES,
+    QUANTITIES,
+    SEALS,
+    Arrangement,
+    curves,
+    phases_apart,
+    points_in_time,
+    seals_of,
+    tilting,
+)
 
 INFO = Info(
     timed=("fmr_reference", 3),
@@ -70,8 +79,6 @@ STYLE = {"fmr": ("rotor", "circle"), "fms": ("stator", "square"), "fmsr": ("good
 @dataclass(frozen=True)
 class Settings:
     """Speeds, and the time domain beside them."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     speed_from: Speed = 0.0
     """Lowest speed."""

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.constants import g
 from scipy.optimize import brentq, minimize_scalar
 
-from ...answers import Answer, Axis, Level, Panel, Series, Table
+from ...answers import Answer, Axis, Level, Panel, Series, Table, table_of
 from ...quantities import in_words
 from ...scenario.errors import ScenarioError
 from ...scene.variants import arrangement
@@ -56,8 +56,6 @@ ROOM = 1.05
 @dataclass(frozen=True)
 class Settings:
     """Frequencies, the accelerations that are asked about, and runs beside them."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     direction: Literal["axial", "angular", "both"] = "both"
     """Of the housing's vibration."""
@@ -252,23 +250,21 @@ def _tables(numbers) -> list[Table]:
              if not any(row[:2] == [a, d] for row in rows)]  # fmt: skip
     columns = [("acceleration", "asked"), ("1", "direction"), (hertz, "closes the film from"), (hertz, "to")]
     tables.append(Table("bands", columns, rows + asked))
-    names = {"kind": ("1", "mode"), "direction": ("1", "turns"), "frequency": (hertz, "natural"),
-             "damped_frequency": (hertz, "damped"), "damping_ratio": ("1", "damping ratio"),
-             "growth_rate": ("growth_rate", "growth rate")}  # fmt: skip
-    tables.append(Table("modes", list(names.values()), [[mode.get(n) for n in names] for mode in numbers["modes"]]))
-    names = {"direction": ("1", "gear mesh"), "frequency": (hertz, "frequency"), "touch": ("acceleration", "touch"),
-             "margin": ("1", "times 45 g"), "film_left": ("h_min", "film left at 45 g")}  # fmt: skip
-    tables.append(Table("gear mesh", list(names.values()), [[row[n] for n in names] for row in numbers["gear_mesh"]]))
+    columns = [("1", "mode", "kind"), ("1", "turns", "direction"), (hertz, "natural", "frequency"),
+               (hertz, "damped", "damped_frequency"), ("1", "damping ratio", "damping_ratio"),
+               ("growth_rate", "growth rate", "growth_rate")]  # fmt: skip
+    tables.append(table_of("modes", columns, numbers["modes"]))
+    columns = [("1", "gear mesh", "direction"), (hertz, "frequency", "frequency"), ("acceleration", "touch", "touch"),
+               ("1", "times 45 g", "margin"), ("h_min", "film left at 45 g", "film_left")]  # fmt: skip
+    tables.append(table_of("gear mesh", columns, numbers["gear_mesh"]))
     rows = []
     for row in numbers["time_domain"]:
-        arm = _arm(numbers, row["direction"])
-        touches = [None if row.get(name) is None else arm * row[name] for name in ("touch", "linear_touch")]
-        rows.append(
-            [row["direction"], row["frequency"], row.get("gain"), row.get("deviation"), *touches, row.get("ratio")]
-        )
-    columns = [("1", "in time"), (hertz, "frequency"), ("1", "gap per motion"), ("1", "away from linear"),
-               ("acceleration", "touch"), ("acceleration", "linear"), ("1", "ratio")]  # fmt: skip
-    return [*tables, Table("in time", columns, rows)]
+        arm, touches = _arm(numbers, row["direction"]), ("touch", "linear_touch")
+        rows.append(row | {name: arm * row[name] for name in touches if row.get(name) is not None})
+    columns = [("1", "in time", "direction"), (hertz, "frequency", "frequency"), ("1", "gap per motion", "gain"),
+               ("1", "away from linear", "deviation"), ("acceleration", "touch", "touch"),
+               ("acceleration", "linear", "linear_touch"), ("1", "ratio", "ratio")]  # fmt: skip
+    return [*tables, table_of("in time", columns, rows)]
 
 
 def _panels(numbers) -> list[Panel]:

@@ -9,16 +9,16 @@ import os
 import platform
 from dataclasses import dataclass
 from functools import partial
-from importlib.metadata import version
 from itertools import pairwise
 from typing import Annotated, Literal
 
 from pydantic import Field
 
-from ...answers import Answer, Table
+from ...answers import Answer, Table, table_of
 from ...scenario.reader import with_values
 from ...scene.scene import SceneError
 from ...simulation.film_error import reynolds_comparison
+from ...simulation.result import libraries
 from ...simulation.selection import check_method, choose_method, prepare_run
 from ...solvers.collocation import collocation
 from ...solvers.fixed_step import REFERENCE_METHODS
@@ -292,14 +292,13 @@ def _tables(answer) -> list[Table]:
     ranks = (("1", "error", "error"), ("1", "fastest", "method"), ("time", "in", "wall"), ("1", "next", "next"),
              ("1", "times as long", "factor_next"), ("1", "DOP853, times as long", "factor_dop853"),
              ("1", "why none", "why"))  # fmt: skip
-    fastest = [[row.get(key) for *_, key in ranks] for row in answer["fastest"]]
     ends = [[name, len(row["status"]), row["status"].count(Status.OK), next(filter(None, row["reason"]), None)]
             for name, row in answer["methods"].items()]  # fmt: skip
     where = film_ladder.looked_at(answer)
     models = [[row["label"], (row.get("error") or {}).get(where), (row.get("leakage_error") or {}).get(where),
                row.get("wall"), row.get("failed")] for row in answer["models"]]  # fmt: skip
     return [
-        Table("fastest", [name[:2] for name in ranks], fastest),
+        table_of("fastest", ranks, answer["fastest"]),
         Table("methods", [("1", "method"), ("1", "runs"), ("1", "ended"), ("1", "the first that did not")], ends),
         Table("models", [("1", "film model"), ("1", "error of the motion"), ("1", "of the leakage"), ("time", "in"),
                          ("1", "failed")], models),
@@ -349,8 +348,7 @@ def machine() -> dict:
             name = next((line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")), name)
     except OSError:
         pass
-    libraries = {library: version(library) for library in ("numpy", "scipy", "scikit-sundae", "numba")}
-    return {"processor": name, "cores": os.cpu_count(), "python": platform.python_version(), **libraries}
+    return {"processor": name, "cores": os.cpu_count(), **libraries()}
 
 
 def mark_slow_runs(methods: dict, where: str, slowest: float):
