@@ -226,7 +226,7 @@ class _Scaled:
         elif self.axis.quantity == "count" and self.axis.scale == "linear":
             axis.get_major_locator().set_params(integer=True)
         elif self.axis.scale == "log":
-            low, high = axis.get_view_interval()
+            low, high = sorted(axis.get_view_interval())
             if low > 0 and high / low > 300:
                 axis.set_major_locator(LogLocator(numticks=8))
                 axis.set_major_formatter(lambda at, _: number(at) if 1e-2 <= at < 1e4 else power(round(np.log10(at))))

@@ -97,7 +97,7 @@ def test_the_study_reports_what_it_must(reference_seal):
     assert stored["methods"] == json.loads(json.dumps(answer["methods"]))
     figure = drawn(chart, path, path.with_suffix(".png"))
     for where, title in chart.TITLES.items():
-        ax = panel(figure, f"{title}, against wall time")
+        ax = panel(figure, f"{title}, by wall time")
         assert all(words in ax.get_xlabel() + ax.get_ylabel() for words in ("error", "ms"))
         for row in answer["methods"].values():
             assert has_points(ax, row["error"][where], 1e3 * np.array(row["wall"])), where

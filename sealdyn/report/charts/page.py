@@ -7,7 +7,7 @@ colours that colour-blind readers tell apart.
 
 import os
 from pathlib import Path
-from textwrap import shorten, wrap
+from textwrap import wrap
 
 import numpy as np
 from matplotlib import rc_context
@@ -54,17 +54,6 @@ DASHES = {"dashed": (0, (5, 2)), "dotted": (0, (1, 1.5)), "dashdot": (0, (5, 2, 
 MARKS = {"circle": "o", "square": "s", "diamond": "D", "triangle": "^", "down": "v", "cross": "x", "plus": "+",
          "star": "*", "tick": "_", "point": "."}  # fmt: skip
 
-# Colour, line and marker of every method: the house's own in full lines, SciPy's dashed, fixed steps dotted.
-LOOKS = {
-    "adams": (BLUE, "-", "o"), "bdf": (GREEN, "-", "s"), "bdf2": (GREEN, "--", "D"), "ida": (PURPLE, "-", "^"),
-    "expm": (BLACK, "-", "*"), "dop853": (VERMILLION, "-", "v"), "rk45": (VERMILLION, "--", "<"),
-    "lsoda": (SKY, "-", "p"), "radau": (ORANGE, "-", "h"), "newmark": (GREY, "--", "P"),
-    "generalised_alpha": (GREY, ":", "X"), "midpoint": (BLACK, ":", "d"), "trbdf2": (BLUE, "--", "v"),
-}  # fmt: skip
-SHORT = {"adams": "Adams", "bdf": "BDF", "bdf2": "BDF 2", "ida": "IDA", "dop853": "DOP853", "rk45": "RK45",
-         "lsoda": "LSODA", "radau": "Radau", "newmark": "Newmark", "generalised_alpha": "gen.-α",
-         "midpoint": "midpoint", "expm": "expm", "trbdf2": "TR-BDF2"}  # fmt: skip
-
 
 LOOK = {
     "font.size": 8.5, "text.hinting": "none", "lines.linewidth": 1.0, "legend.frameon": False, "legend.fontsize": 8,
@@ -102,16 +91,9 @@ def run_page(run, width: float, height: float, mosaic, **layout):
     return figure, panels(figure, header(figure, run), mosaic, **layout)
 
 
-def study_page(study, width: float, height: float, mosaic, title: str = "", below: str = "", bold: str = "", **layout):
-    """Figure (inches) and axes by name for a study: `mosaic` and `layout` as of matplotlib's subplot_mosaic.  The title
-    is by default the scenario's question; below it stand `below`, by default name and question, and in bold letters, of
-    a failed study in its colour, `bold`."""
-    figure = sheet(width, height)
-    return figure, panels(figure, heading(figure, *study_words(study, title, below, bold)), mosaic, **layout)
-
-
 def study_words(study, title: str = "", below: str = "", bold: str = "") -> tuple[str, str, str, str]:
-    """Title, lines below, bold ones and their colour, as `study_page` has them."""
+    """Title, lines below, bold ones and their colour, the title by default the scenario's question, the lines
+    below by default name and question."""
     asked, status = question_of(study["question"]), study["answer"].get("status", Status.OK)
     title = title or asked or study["name"]
     below = below or (f"{study['name']}: {asked}" if asked and asked != title else study["name"])
@@ -176,11 +158,6 @@ def heading(figure, title: str, below: str, bold: str = "", colour: str = BLACK)
 def _lines(words: str, length: int) -> list[str]:
     """Lines of at most `length` characters; a text without end is cut."""
     return [line for part in words.split("\n") for line in wrap(part, length, max_lines=MOST_LINES, placeholder=" …")]
-
-
-def shortened(words: str, length: int) -> str:
-    """`words` in one line of at most `length` characters."""
-    return shorten(words, length, placeholder=" …")
 
 
 def save(figure, path) -> Path | Figure:
