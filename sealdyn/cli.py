@@ -5,6 +5,7 @@ import json
 import os
 import shlex
 import sys
+from importlib import import_module
 from pathlib import Path
 from typing import Annotated
 
@@ -90,27 +91,11 @@ def _options(
             print(f"  {line:{width}}  {what}")
 
 
-def _completes(names):
-    """What the shell offers for a word of which `names()` are the choices."""
-    return lambda incomplete: [name for name in names() if name.startswith(incomplete)]
-
-
-def _seal_kinds():
-    from .scenario.templates import kinds
-
-    return kinds()
-
-
-def _studies():
-    from .studies import study_names
-
-    return study_names()
-
-
-def _sources():
-    from .analysis.sources import source_names
-
-    return source_names()
+def _completes(room: str, names: str):
+    """What the shell offers for a word of which `names()` of a room are the choices: loaded when it is asked for."""
+    return lambda incomplete: [
+        name for name in vars(import_module(f"sealdyn.{room}"))[names]() if name.startswith(incomplete)
+    ]
 
 
 ScenarioFile = Annotated[Path, typer.Argument(help="scenario (TOML), or an archive (HDF5) whose scenario is run again")]
@@ -291,7 +276,7 @@ def new(
         typer.Argument(
             help="fms (the stator floats), fmr (the rotor), fmsr (both), gas (a sealing dam), pump (rough faces that "
             "touch) or wavy (wavy and rough ones)",
-            autocompletion=_completes(_seal_kinds),
+            autocompletion=_completes("scenario.templates", "kinds"),
         ),
     ],
     out: Annotated[Path | None, typer.Option(help="scenario to write (default KIND.toml here)")] = None,
@@ -427,14 +412,12 @@ def plot(
         str | None,
         typer.Option(
             help="of a run: overview (default), orbit, film, spectrum or poincare",
-            autocompletion=_completes(lambda: CHARTS),
+            autocompletion=lambda incomplete: [name for name in CHARTS if name.startswith(incomplete)],
         ),
     ] = None,
     out: Annotated[Path | None, typer.Option(help="figure to write: png, svg, pdf (default png, beside it)")] = None,
 ):
     """Draw a figure from an archive, of a study its own."""
-    import importlib
-
     from .archive import is_study, read_study
     from .studies import study_names
 
@@ -457,7 +440,7 @@ def plot(
         elif kind not in (None, "overview"):
             _of_a_face_seal(file)
         try:
-            importlib.import_module("sealdyn.report." + (f"charts.{name}" if name else "panels")).draw(file, out)
+            import_module("sealdyn.report." + (f"charts.{name}" if name else "panels")).draw(file, out)
         except OSError as error:
             raise not_written(error, out, "the archive is whole") from None
     say(out)
@@ -567,7 +550,10 @@ def _must_be_archive(file):
 def validate(
     source: Annotated[
         str | None,
-        typer.Argument(help="one source, e.g. zuk-1972 (default all)", autocompletion=_completes(_sources)),
+        typer.Argument(
+            help="one source, e.g. zuk-1972 (default all)",
+            autocompletion=_completes("analysis.sources", "source_names"),
+        ),
     ] = None,
     as_json: AsJson = False,
 ):
@@ -608,7 +594,10 @@ def study(
     context: typer.Context,
     name: Annotated[
         str,
-        typer.Argument(help="the study, e.g. critical-speed; --help lists them", autocompletion=_completes(_studies)),
+        typer.Argument(
+            help="the study, e.g. critical-speed; --help lists them",
+            autocompletion=_completes("studies", "study_names"),
+        ),
     ],
     file: ScenarioFile,
     set: Overrides = None,
