@@ -19,13 +19,12 @@ if TYPE_CHECKING:
     from .archive import ArchiveError, open_archive
     from .scenario.errors import ScenarioError
     from .scenario.reader import Scenario, read_scenario
-    from .scenario.shipped import example, examples
+    from .scenario.templates import example, examples
     from .simulation.batch import simulate_many, sweep
     from .simulation.result import Result
     from .simulation.run import RunEnded, evaluate, run
     from .simulation.simulate import simulate
-    from .studies._answer import Answer, study
-    from .studies._runner import run_study
+    from .studies._runner import Answer, run_study, study
 
 __version__ = "0.1.0"
 __all__ = [
@@ -53,13 +52,12 @@ _PLACES = {
     "archive": ("ArchiveError", "open_archive"),
     "scenario.errors": ("ScenarioError",),
     "scenario.reader": ("Scenario", "read_scenario"),
-    "scenario.shipped": ("example", "examples"),
+    "scenario.templates": ("example", "examples"),
     "simulation.batch": ("simulate_many", "sweep"),
     "simulation.result": ("Result",),
     "simulation.run": ("RunEnded", "evaluate", "run"),
     "simulation.simulate": ("simulate",),
-    "studies._answer": ("Answer", "study"),
-    "studies._runner": ("run_study",),
+    "studies._runner": ("Answer", "run_study", "study"),
 }
 
 

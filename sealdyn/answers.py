@@ -23,6 +23,11 @@ class Table:
     of_rows: Sequence[str] = ()
 
 
+def table_of(name: str, columns: Sequence[tuple[str, str, str]], rows: Sequence[Mapping[str, Any]]) -> Table:
+    """A table of rows that are dicts: `columns` of a quantity, a heading, and the key in a row."""
+    return Table(name, [column[:2] for column in columns], [[row.get(key) for *_, key in columns] for row in rows])
+
+
 @dataclass(frozen=True)
 class Axis:
     """A quantity (or SI unit) along an axis, and its name, by default that of the quantity.

@@ -5,6 +5,7 @@ import json
 import os
 import shlex
 import sys
+from importlib import import_module
 from pathlib import Path
 from typing import Annotated
 
@@ -90,27 +91,11 @@ def _options(
             print(f"  {line:{width}}  {what}")
 
 
-def _completes(names):
-    """What the shell offers for a word of which `names()` are the choices."""
-    return lambda incomplete: [name for name in names() if name.startswith(incomplete)]
-
-
-def _seal_kinds():
-    from .scenario.templates import kinds
-
-    return kinds()
-
-
-def _studies():
-    from .studies import study_names
-
-    return study_names()
-
-
-def _sources():
-    from .analysis.validation import source_names
-
-    return source_names()
+def _completes(room: str, names: str):
+    """What the shell offers for a word of which `names()` of a room are the choices: loaded when it is asked for."""
+    return lambda incomplete: [
+        name for name in vars(import_module(f"sealdyn.{room}"))[names]() if name.startswith(incomplete)
+    ]
 
 
 ScenarioFile = Annotated[Path, typer.Argument(help="scenario (TOML), or an archive (HDF5) whose scenario is run again")]
@@ -126,7 +111,7 @@ def _read(path: Path, overrides):
         with reads(path) if path.suffix == ".h5" else contextlib.nullcontext():
             scenario = read_scenario(path, overrides or ())
         if scenario.study:
-            from .studies._settings import refuse_unknown_studies
+            from .studies._runner import refuse_unknown_studies
 
             refuse_unknown_studies(scenario)
         return scenario
@@ -255,7 +240,7 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
 def _refuse_settings(scenario) -> list[str]:
     """Ends the verb for settings of a study that it does not take; else what is odd in them."""
     from .scenario.errors import ScenarioError
-    from .studies._settings import refuse_settings
+    from .studies._runner import refuse_settings
 
     try:
         return refuse_settings(scenario)
@@ -291,7 +276,7 @@ def new(
         typer.Argument(
             help="fms (the stator floats), fmr (the rotor), fmsr (both), gas (a sealing dam), pump (rough faces that "
             "touch) or wavy (wavy and rough ones)",
-            autocompletion=_completes(_seal_kinds),
+            autocompletion=_completes("scenario.templates", "kinds"),
         ),
     ],
     out: Annotated[Path | None, typer.Option(help="scenario to write (default KIND.toml here)")] = None,
@@ -317,7 +302,7 @@ def new(
 def schema(radial: Annotated[bool, typer.Option("--radial", help="of lip and circumferential seals")] = False):
     """Print the JSON schema of scenario files, for editors."""
     from .scenario.tables import RadialFile, ScenarioFile
-    from .studies._settings import schema_with_studies
+    from .studies._runner import schema_with_studies
 
     print(json.dumps(schema_with_studies(RadialFile if radial else ScenarioFile), indent=2))
 
@@ -325,7 +310,7 @@ def schema(radial: Annotated[bool, typer.Option("--radial", help="of lip and cir
 @app.command("list")
 def list_scenarios(as_json: AsJson = False):
     """Name the scenarios that come with the program, and what each asks."""
-    from .scenario.shipped import examples, shipped_folder, shipped_paths
+    from .scenario.templates import examples, shipped_folder, shipped_paths
 
     folder, found, paths = shipped_folder(), examples(), shipped_paths()
     if as_json:
@@ -427,14 +412,12 @@ def plot(
         str | None,
         typer.Option(
             help="of a run: overview (default), orbit, film, spectrum or poincare",
-            autocompletion=_completes(lambda: CHARTS),
+            autocompletion=lambda incomplete: [name for name in CHARTS if name.startswith(incomplete)],
         ),
     ] = None,
     out: Annotated[Path | None, typer.Option(help="figure to write: png, svg, pdf (default png, beside it)")] = None,
 ):
     """Draw a figure from an archive, of a study its own."""
-    import importlib
-
     from .archive import is_study, read_study
     from .studies import study_names
 
@@ -457,7 +440,7 @@ def plot(
         elif kind not in (None, "overview"):
             _of_a_face_seal(file)
         try:
-            importlib.import_module("sealdyn.report." + (f"charts.{name}" if name else "panels")).draw(file, out)
+            import_module("sealdyn.report." + (f"charts.{name}" if name else "panels")).draw(file, out)
         except OSError as error:
             raise not_written(error, out, "the archive is whole") from None
     say(out)
@@ -498,7 +481,7 @@ def report(
     title: Annotated[str, typer.Option(help="its heading")] = "",
 ):
     """Write one page for a design review: it opens anywhere, without a network."""
-    from .analysis.validation import sources_of_film
+    from .analysis.sources import sources_of_film
     from .report.review import review
 
     if out.suffix not in (".html", ".htm"):
@@ -567,12 +550,15 @@ def _must_be_archive(file):
 def validate(
     source: Annotated[
         str | None,
-        typer.Argument(help="one source, e.g. zuk-1972 (default all)", autocompletion=_completes(_sources)),
+        typer.Argument(
+            help="one source, e.g. zuk-1972 (default all)",
+            autocompletion=_completes("analysis.sources", "source_names"),
+        ),
     ] = None,
     as_json: AsJson = False,
 ):
     """Compare published numbers with what the program computes: all sources, or one."""
-    from .analysis.validation import checks, report, source_names
+    from .analysis.sources import checks, report, source_names
 
     names = source_names()
     wanted = names if source is None else [source.replace("_", "-")]
@@ -597,7 +583,7 @@ class _StudyCommand(TyperCommand):
         if {"-h", "--help"} & set(args):
             from rich.markup import escape
 
-            from .studies._settings import help_text
+            from .studies._runner import help_text
 
             self.epilog = escape(help_text(next((word for word in args if word[0] != "-"), "")))
         return super().parse_args(context, args)
@@ -608,7 +594,10 @@ def study(
     context: typer.Context,
     name: Annotated[
         str,
-        typer.Argument(help="the study, e.g. critical-speed; --help lists them", autocompletion=_completes(_studies)),
+        typer.Argument(
+            help="the study, e.g. critical-speed; --help lists them",
+            autocompletion=_completes("studies", "study_names"),
+        ),
     ],
     file: ScenarioFile,
     set: Overrides = None,

@@ -14,7 +14,7 @@ from ..kernel_cache import compiling, kept_kernels, kernel_folder
 from ..radial_seals.followers import closed_form_sentences
 from ..scenario.errors import ScenarioError
 from ..scenario.reader import Scenario, read_scenario, with_values
-from ..scenario.shipped import shipped_paths
+from ..scenario.templates import shipped_paths
 from ..scene.gas import highest_density
 from ..scene.patterns import faces_tilt, grooves_of, waves_of
 from ..scene.radial import RadialScene
@@ -54,6 +54,8 @@ def checked(scenario: Scenario) -> dict:
             "equilibria": [],
         }
     grooves, rough = _over_grooves(scenario.scene, run.model.clearance) if grooves_of(scenario.scene)[1] else ({}, [])
+    warm = [] if run.model.heat is None else heat_cautions(run.model.given, run.model.heat)
+    told = [caution.sentence for caution in (*run.cautions, *scene_cautions(scenario, run.model), *warm)]
     return (
         found
         | grooves
@@ -62,11 +64,7 @@ def checked(scenario: Scenario) -> dict:
             "model": plain(model_chosen(scenario, run, plan)),
             "clearance": run.model.clearance,
             "equilibria": [vars(e) for e in run.model.interface.equilibria],
-            "warnings": rough
-            + [
-                caution.sentence
-                for caution in (*run.cautions, *scene_cautions(scenario, run.model), *_of_heat(run.model))
-            ],
+            "warnings": rough + told,
             "heat": plain(heat_of(run.model.given, run.model.heat)),
             "design_rules": design_rules.findings(scenario, run.model),
             "beside_reynolds": reynolds_comparison(run),
@@ -87,10 +85,6 @@ def _over_grooves(scene, clearance: float) -> tuple[dict, list[str]]:
     rough = [f"perhaps turbulent: Couette Reynolds number {reynolds:.0f} in the grooves"] if reynolds > LAMINAR else []
     known = {"face": face, "pumping": film.pumping, "depth_over_film": one.depth / clearance}
     return {"grooves": known | {"reynolds_number": reynolds}}, rough
-
-
-def _of_heat(model) -> list:
-    return [] if model.heat is None else heat_cautions(model.given, model.heat)
 
 
 def rules_of(scenario: Scenario) -> list[dict]:

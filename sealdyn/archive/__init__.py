@@ -11,7 +11,6 @@ from .study import (
     is_study,
     open_archive,
     read_study,
-    tables_as_dataset,
     write_study,
 )
 from .tables import columns_of
@@ -39,6 +38,5 @@ __all__ = [
     "partial_path",
     "read_info",
     "read_study",
-    "tables_as_dataset",
     "write_study",
 ]

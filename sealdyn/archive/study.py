@@ -27,7 +27,7 @@ from .files import (
     seal,
 )
 from .run import open_run, utf8_text
-from .tables import Variable, answer_variables, grid_variables, long_columns, tables, variables
+from .tables import Variable, answer_variables, grid_variables, long_columns, tables
 
 FORMAT = "sealdyn study 2"
 # How netCDF-4 calls a dimension without values, in the attribute NAME of its scale.
@@ -198,7 +198,9 @@ def open_archive(path: str | os.PathLike) -> xarray.Dataset:
 
 
 def answer_as_dataset(answer: dict, units: dict, along: dict) -> xarray.Dataset:
-    """The answer of any study as an `xarray.Dataset`: `as_dataset` over a grid of keys, else `tables_as_dataset`."""
+    """The answer of any study as an `xarray.Dataset`: `as_dataset` over a grid of keys; else every list in it,
+    "curve/h_min" as the variable curve.h_min, and the column of a list of rows, "modes/frequency", along the dimension
+    of its rows, modes.  `units` and `along` as in `tables.variables`; what others lie along is a coordinate."""
     return _dataset(answer, answer_variables(answer, units, along))
 
 
@@ -217,14 +219,6 @@ def as_dataset(answer: dict) -> xarray.Dataset:
     words empty, the status is "not possible" and the message its reason.
     """
     return _dataset(answer, grid_variables(answer))
-
-
-def tables_as_dataset(answer: dict, units: dict, along: dict) -> xarray.Dataset:
-    """Every list in the answer of a study as an `xarray.Dataset`: "curve/h_min" is the variable curve.h_min, and the
-    column of a list of rows, "modes/frequency", lies along the dimension of its rows, modes.  `units` and `along` as in
-    `tables.variables`; what others lie along is a coordinate.
-    """
-    return _dataset(answer, variables(answer, units, along))
 
 
 def _dataset(answer: dict, found: list[Variable]) -> xarray.Dataset:

@@ -271,8 +271,9 @@ def tables(found: list[Variable], name: str) -> dict[str, list[Variable]]:
     joined: dict[tuple[str, ...], list[Variable]] = {}
     for own, some in groups.items():
         of = {variable.table for variable in some}
-        labels = (v for other, more in groups.items() if set(other) < set(own) for v in more)
-        joined[own] = [v for v in labels if v.table in of and _is_label(v) and v.name not in own]
+        fewer = (v for other, more in groups.items() if set(other) < set(own) for v in more)
+        labels = (v for v in fewer if v.coordinate or v.values.dtype.kind == "U")
+        joined[own] = [v for v in labels if v.table in of and v.name not in own]
     told = {own: some for own, some in groups.items() if not _all_told(own, some, joined)}
     names = {own: _common([v for v in some if not v.coordinate]) or name for own, some in told.items()}
     out = {}
@@ -283,10 +284,6 @@ def tables(found: list[Variable], name: str) -> dict[str, list[Variable]]:
         plain = all(set(own) <= set(other) for other in like)
         out[names[own] if plain else f"{names[own]}.{more}"] = some + joined[own]
     return out | wide
-
-
-def _is_label(variable: Variable) -> bool:
-    return variable.coordinate or variable.values.dtype.kind == "U"
 
 
 def _all_told(own, some, joined) -> bool:

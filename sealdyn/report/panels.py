@@ -13,7 +13,15 @@ from ..answers import Axis, Panel, Series, panels_of, plain
 from ..archive import read_study
 from ..quantities import printed, quantity, reading_in, shown_in
 from .charts.page import (
+    COLOURS,
+    CYCLE,
+    DASHES,
+    GREY,
+    MARKS,
+    PALE,
     PAPER,
+    PRESSURE,
+    THICKNESS,
     absent,
     annulus,
     heading,
@@ -26,7 +34,6 @@ from .charts.page import (
     sheet,
     study_words,
 )
-from .charts.palette import COLOURS, CYCLE, DASHES, GREY, MARKS, PALE, PRESSURE, THICKNESS
 
 # Columns of panels side by side; width (inches) of a figure by their number; height of a panel alone and in a stack.
 ACROSS, WIDTHS, ALONE, STACKED = 3, (8.5, 11.5, 13.0, 13.5), 4.6, 3.0
@@ -219,7 +226,7 @@ class _Scaled:
         elif self.axis.quantity == "count" and self.axis.scale == "linear":
             axis.get_major_locator().set_params(integer=True)
         elif self.axis.scale == "log":
-            low, high = axis.get_view_interval()
+            low, high = sorted(axis.get_view_interval())
             if low > 0 and high / low > 300:
                 axis.set_major_locator(LogLocator(numticks=8))
                 axis.set_major_formatter(lambda at, _: number(at) if 1e-2 <= at < 1e4 else power(round(np.log10(at))))

@@ -35,7 +35,7 @@ def review(archives, out_path, title: str = "", rules=None, validation=None, pro
     """Write the page of some archives (paths) of runs and studies.
 
     `rules(path, info)` gives the rows of the design rules of a run (`findings` of analysis/design_rules.py),
-    `validation(film)` the sources that a film was held against (`sources_of_film` of analysis/validation.py);
+    `validation(film)` the sources that a film was held against (`sources_of_film` of analysis/sources);
     `progress(done, archives, words)` is told of each.  Returns the path.  **Raises** ArchiveError for what is no
     archive."""
     from jinja2 import Environment, StrictUndefined

@@ -83,8 +83,10 @@ def _face_lines(summary) -> Iterator[Line]:
         choked = "choked" if film["exit_mach"] >= 1.0 else "not choked"
         yield Line("", [("Mach number where the gas leaves", film["exit_mach"], "1"), (choked, None, "")])
     heat = summary.get("heat")
-    yield _friction(friction, closing["face_area"]) if heat is None else _work(friction)
-    if heat is not None:
+    if heat is None:
+        yield _friction(friction, closing["face_area"])
+    else:
+        yield Line("friction", [("", friction["power"], "power"), ("torque", friction["torque"], "torque")])
         yield from _heat_lines(heat)
     if _another(film.get("friction_power"), friction["power"]):
         yield Line("", [("aligned, at the end", film["friction_power"], "power")], detail=True)
@@ -211,10 +213,6 @@ def _friction(friction, area) -> Line:
         parts.append(("of face", friction["power"] / area, "heat_flux"))
     more = f"more than the leakage can carry (over {CARRIED:.0f} K)" if rise is not None else ""
     return Line("friction", [*parts, (more, None, "")])
-
-
-def _work(friction) -> Line:
-    return Line("friction", [("", friction["power"], "power"), ("torque", friction["torque"], "torque")])
 
 
 def _heat_lines(heat) -> Iterator[Line]:

@@ -13,8 +13,7 @@ from .. import __version__
 from ..answers import toml_line
 from ..scene.variants import ALTERNATIVES
 from ..units import Length, QuantityError, quoted
-from .door import refuse_unbounded, refuse_unreadable
-from .errors import ScenarioError, diameters, table_in, tables, without_indices
+from .errors import ScenarioError, diameters, refuse_unbounded, refuse_unreadable, table_in, tables, without_indices
 
 # Raised when a key is renamed, goes, or means something else; new keys alone do not raise it.
 SCHEMA = 1

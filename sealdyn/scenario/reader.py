@@ -20,9 +20,10 @@ from ..scene.rings import INERTIAL, RING_NAMES
 from ..scene.scene import Scene
 from ..unit_names import spelled_like
 from ..units import is_gauge, quoted
-from .door import refuse_unbounded, refuse_unreadable
 from .errors import (
     ScenarioError,
+    refuse_unbounded,
+    refuse_unreadable,
 )
 from .motion_files import refuse_files_elsewhere, whole_file
 from .overrides import (

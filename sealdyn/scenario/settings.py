@@ -18,8 +18,7 @@ from ..scene.checks import check_scene
 from ..scene.scene import SceneError
 from ..unit_names import dimension_and_factor
 from ..units import Quantity, quantity_of, quoted
-from .door import refuse_unbounded
-from .errors import ScenarioError, nearest_of
+from .errors import ScenarioError, nearest_of, refuse_unbounded
 from .reader import Scenario
 from .tables import refuse_extremes
 

@@ -13,6 +13,7 @@ from pydantic import Field, TypeAdapter, ValidationError
 
 from ..films import all_film_names, film_of
 from ..numerics.piecewise_linear import PiecewiseLinear
+from ..scene import Strict
 from ..scene.application import Application, RadialApplication, application_errors
 from ..scene.checks import scene_errors
 from ..scene.excitation import Motion
@@ -42,7 +43,7 @@ BESIDE_THE_RUN = ("study", "application", "schema")
 
 
 @dataclass(frozen=True)
-class Run:
+class Run(Strict):
     """The `[run]` table: how long, how often sampled, how exact, by which method, from which start.
 
     `turns` of the shaft (default 60) or `duration` (s); `samples_per_turn` or `samples` in all (default 64 a turn, of a
@@ -50,8 +51,6 @@ class Run:
     steady response where that is stable and leaves the film open; at rest with `[initial]`, and, unless the faces would
     overlap there, with contact, a secondary seal, a film with unknowns of its own, or tables.
     """
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     turns: Annotated[float, Field(gt=0)] | None = None
     """Of the shaft (60 without `duration`)."""
@@ -75,8 +74,6 @@ class ScenarioFile(Scene):
     """A scenario file: the scene, how to run it, what the seal is for, and settings of studies (each study knows its
     own)."""
 
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
-
     run: Run = field(default_factory=Run)
     """How long, how exact, by which method."""
     application: Application | None = None
@@ -90,8 +87,6 @@ class ScenarioFile(Scene):
 @dataclass(frozen=True)
 class RadialFile(RadialScene):
     """A scenario file of a radial seal."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     schema: Annotated[int, Field(ge=1, le=SCHEMA)] = SCHEMA
     """Version of these keys; without it the present one."""

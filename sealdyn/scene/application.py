@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from typing import Annotated, Any, Literal
 
 from ..units import Frequency, Pressure, Quantity, QuantityError, Temperature, Usual, VolumeFlow, quoted
+from . import Strict
 
 Size = Annotated[float, Quantity("length", "m", '"40 mm"', (), 0, True, Usual(1e-3, 10.0, "mm"))]
 OFF = Usual(1e-9, 1e-2, "mm")
@@ -76,10 +77,8 @@ class Reasons(Quantity):
 
 
 @dataclass(frozen=True)
-class Application:
+class Application(Strict):
     """The `[application]` table, SI."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     shaft_diameter: Size | None = None
     """Diameter of the shaft."""

@@ -5,18 +5,17 @@ from dataclasses import dataclass
 from typing import Literal
 
 from ..units import AsperityDensity, Height, Roughness, Share, Stress, WearCoefficient
+from . import Strict
 
 # Half height of Christensen's surface, and the reach of a Gaussian one, in rms roughnesses.
 HALF_HEIGHT, REACH = 3.0, 5.0
 
 
 @dataclass(frozen=True)
-class Contact:
+class Contact(Strict):
     """The `[contact]` table.  `roughness` (m) is the composite rms of both faces, `compressive_strength` (Pa) that of
     the softer one; shear of the touching area is `shear_strength` (Pa), or `friction_coefficient` (0.1 when neither is
     given) times the contact pressure; `asperity_...` and the composite `modulus` belong to Greenwood and Williamson."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     roughness: Roughness
     """Composite rms roughness of both faces; they meet at 3 rms, Gaussian heights at 5 (finish of each face about 0.1

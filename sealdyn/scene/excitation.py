@@ -32,6 +32,7 @@ from ..units import (
     Tilt,
     Varying,
 )
+from . import Strict
 from .sweep import AngularSweep, AxialSweep, Sweep, remark
 
 MOTION_COLUMNS = ("axial", "tilt_x", "tilt_y")
@@ -43,11 +44,9 @@ NEAREST_SAMPLES = 1e-3
 
 
 @dataclass(frozen=True)
-class Motion:
+class Motion(Strict):
     """Motion of the shaft under the rotor, or of the housing under the stator, given by samples, along the spline
     of fifth degree through them; it adds to runout, whirl and vibration."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     file: str | None = field(default=None, compare=False)
     """CSV or HDF5 with these columns, beside the scenario; columns that are given here are not read from it."""
@@ -101,10 +100,8 @@ MOST_TONES = 5000
 
 
 @dataclass(frozen=True)
-class AxialRandom:
+class AxialRandom(Strict):
     """Random vibration of the housing along the shaft axis."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     frequency: Listed[Frequency]
     """Corners of the spectrum, increasing, the first and last those of the band."""
@@ -117,10 +114,8 @@ class AxialRandom:
 
 
 @dataclass(frozen=True)
-class AngularRandom:
+class AngularRandom(Strict):
     """Random vibration of the housing about a fixed axis at `direction` (rad) from the x axis."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     frequency: Listed[Frequency]
     """Corners of the spectrum, increasing, the first and last those of the band."""
@@ -190,10 +185,8 @@ def _densities(vibration) -> tuple[float, ...]:
 
 
 @dataclass(frozen=True)
-class Whirl:
+class Whirl(Strict):
     """Non-synchronous angular whirl of the shaft, `angle exp(i (ratio * shaft angle + phase))`, in rad."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     ratio: float
     """Whirl speed over shaft speed; negative against the shaft."""
@@ -204,10 +197,8 @@ class Whirl:
 
 
 @dataclass(frozen=True)
-class Shaft:
+class Shaft(Strict):
     """The `[shaft]` table: speed (rad/s) and whirls."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     speed: Varying[Speed]
     """Shaft speed; negative turns the other way."""
@@ -218,11 +209,9 @@ class Shaft:
 
 
 @dataclass(frozen=True)
-class AxialVibration:
+class AxialVibration(Strict):
     """Axial vibration of the housing, cos(2 pi frequency t + phase), frequency in Hz, as displacement (m) or
     acceleration (m/s^2)."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     frequency: Frequency
     """Of this tone."""
@@ -235,11 +224,9 @@ class AxialVibration:
 
 
 @dataclass(frozen=True)
-class AngularVibration:
+class AngularVibration(Strict):
     """Angular vibration of the housing about a fixed axis at `direction` (rad) from the x axis, cos(2 pi frequency t +
     phase)."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     frequency: Frequency
     """Of this tone."""
@@ -254,11 +241,9 @@ class AngularVibration:
 
 
 @dataclass(frozen=True)
-class Housing:
+class Housing(Strict):
     """The `[[housing.axial]]` and `[[housing.angular]]` tables, those of random vibration and of sweeps, and
     `[housing.motion]`."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     axial: list[AxialVibration] = field(default_factory=list)
     """Tones along the shaft axis."""

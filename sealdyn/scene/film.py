@@ -40,6 +40,7 @@ from ..units import (
     Varying,
     Viscosity,
 )
+from . import Strict
 from .gas import Gas, GasDam, GasName, GasReynolds
 from .liquid import Heat, Liquid, LiquidName
 
@@ -91,7 +92,7 @@ SHARP = 0.05
 
 
 @dataclass(frozen=True)
-class Pads:
+class Pads(Strict):
     """One row of equal pads around the face: the film is thicker by `depth` over the angle of each pad and between its
     radii, with smooth flanks,
 
@@ -99,8 +100,6 @@ class Pads:
 
     A pad that reaches to a radius of the face is open there.  **Valid** pads far wider than `edge`, which cells must
     resolve."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     count: int
     """Pads to the circle."""
@@ -177,10 +176,8 @@ MOST_RADIAL, MOST_AROUND = 400, 20000
 
 
 @dataclass(frozen=True)
-class Reynolds:
+class Reynolds(Strict):
     """The `[film.reynolds]` table: options of the film "reynolds"."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     grid_accuracy: float = 0.01
     """Relative error that the cells may have beside a run's accuracy; decides how many there are if none are given."""
@@ -229,11 +226,9 @@ LENGTH = Length.__metadata__[0]
 
 
 @dataclass(frozen=True)
-class Profile:
+class Profile(Strict):
     """The `[film.profile]` table: the gap between the faces is wider by `depth` (m) at `radius` (m), linear between,
     on top of clearance and coning.  The first radius is the inner one of the face, the last the outer."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     radius: Listed[Length]
     """From the inner to the outer radius of the face, increasing."""
@@ -242,11 +237,9 @@ class Profile:
 
 
 @dataclass(frozen=True)
-class Coefficients:
+class Coefficients(Strict):
     """A linear film in the user's own numbers (a vendor's, a test's), SI: forces fall by stiffness times displacement
     and damping times rate.  The cross stiffness follows from the wedge, mean spin times tilt damping."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     tilt_stiffness: SignedTiltStiffness
     """Restoring moment per relative tilt."""
@@ -259,10 +252,8 @@ class Coefficients:
 
 
 @dataclass(frozen=True)
-class Film:
+class Film(Strict):
     """The `[film]` table: faces, fluid, pressures and the film model."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     inner_radius: Radius
     """Inner radius of the narrower face."""

@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from ..numerics.piecewise_linear import PiecewiseLinear, points
 from ..units import DEGREES, SpecificHeat, TemperatureScale, Usual, Viscosity
+from . import Strict
 
 # Of the properties of a gas, whatever the seal is.
 GasTemperature = Annotated[float, TemperatureScale("temperature", "K", DEGREES, (), 0, True, Usual(1.0, 1e4, "degC"))]
@@ -14,12 +15,10 @@ NORMAL_TEMPERATURE, NORMAL_PRESSURE = 273.15, 101325.0
 
 
 @dataclass(frozen=True)
-class Gas:
+class Gas(Strict):
     """The `[film.gas]` table: an ideal gas.  Unless `film.viscosity` is given its viscosity follows Sutherland's law
     through `reference_viscosity` (Pa s) at `reference_temperature` (K) with `sutherland_temperature` (K), valid between
     `lowest` and `highest` (K)."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     gas_constant: SpecificHeat
     """Specific gas constant R, of p = density R T."""
@@ -60,10 +59,8 @@ GasName = Literal["air", "nitrogen", "helium", "argon"]
 
 
 @dataclass(frozen=True)
-class GasDam:
+class GasDam(Strict):
     """The `[film.gas_dam]` table: options of the film "gas_dam"."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     entrance_loss: float = 1.0
     """C_L: share of the isentropic entrance velocity that is reached, 1 without loss."""
@@ -76,10 +73,8 @@ class GasDam:
 
 
 @dataclass(frozen=True)
-class GasReynolds:
+class GasReynolds(Strict):
     """The `[film.gas_reynolds]` table: options of the film "gas_reynolds"."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     slip: bool = False
     """First-order slip at the faces: flow grows by 1 + 6 Kn."""

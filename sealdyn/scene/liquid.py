@@ -26,6 +26,7 @@ from ..units import (
     Usual,
     Viscosity,
 )
+from . import Strict
 from .gas import over_temperature
 
 ThermalConductivity = Annotated[float, Quantity("thermal conductivity", "W/(m*K)", '"10 W/(m*K)"', (), 0, True,
@@ -92,7 +93,7 @@ class ViscosityPoints:
 
 
 @dataclass(frozen=True)
-class Liquid:
+class Liquid(Strict):
     """The `[film.liquid]` table: a liquid whose viscosity follows its temperature, between the first and the last of
     the temperatures of its viscosities.
 
@@ -100,8 +101,6 @@ class Liquid:
     between neighbouring points (ASTM D341 for two).
     **Valid** mineral oils and liquids alike; density, specific heat and conductivity are the same at all temperatures.
     """
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     density: Density
     """At the temperature of the seal."""
@@ -234,11 +233,9 @@ BY_NUMBERS, BY_BODY = ("resistance", "coning_per_watt", "time_constant"), ("conv
 
 
 @dataclass(frozen=True)
-class HeatedRing:
+class HeatedRing(Strict):
     """One ring of `[film.heat]`: by numbers of its maker, finite elements or a test; or by its `body` and the
     convection on it."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     resistance: ThermalResistance | None = None
     """Rise of the face over the heat that enters it."""
@@ -256,10 +253,8 @@ class HeatedRing:
 
 
 @dataclass(frozen=True)
-class Heat:
+class Heat(Strict):
     """The `[film.heat]` table; a ring that is not named takes no heat."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     stator: HeatedRing | None = None
     """The ring that stands."""

@@ -16,6 +16,7 @@ from typing import Literal
 
 from ..numerics.piecewise_linear import points
 from ..units import Angle, Height, Radius
+from . import Strict
 
 # Most waves of both faces together: kernels keep room for them.
 MOST_WAVES = 16
@@ -24,11 +25,9 @@ HIGHEST_ORDER = 100
 
 
 @dataclass(frozen=True)
-class Waviness:
+class Waviness(Strict):
     """One wave of a ring's face, `amplitude cos(order (theta - ring angle) + phase)` of its height, counted along the
     shaft: on the stator it opens the gap, on the rotor it closes it."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     order: int
     """Waves to the circle, 2 to 100 (order 1 is a tilt)."""
@@ -75,13 +74,11 @@ def waviness_errors(scene) -> list[tuple[str, str, str]]:
 
 
 @dataclass(frozen=True)
-class Grooves:
+class Grooves(Strict):
     """One row of equal grooves with sharp edges.
 
     Spiral: r = inner_radius exp(theta tan(angle)) along an edge, straight in (ln r, theta).  Tee: arms between the two
     radii over `share` of the pitch, and a stem outwards from their middle, with radial sides."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     count: int
     """Grooves to the circle."""

@@ -20,6 +20,7 @@ from ..units import (
     Varying,
     Viscosity,
 )
+from . import Strict
 
 # The tables that make a scenario one of a radial seal.
 RADIAL = ("lip", "circumferential")
@@ -39,11 +40,9 @@ PressureDifference = Annotated[float, Quantity("pressure", "Pa", '"0.1 bar"', ()
 
 
 @dataclass(frozen=True)
-class Lobes:
+class Lobes(Strict):
     """A `[[shaft.lobes]]` table: the running surface is out of round, `amplitude cos(order (theta - shaft angle) -
     phase)`."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     order: int
     """Lobes around the shaft: 2 is oval."""
@@ -54,10 +53,8 @@ class Lobes:
 
 
 @dataclass(frozen=True)
-class RadialShaft:
+class RadialShaft(Strict):
     """The `[shaft]` table of a radial seal."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     radius: Radius
     """Of the running surface."""
@@ -80,7 +77,7 @@ class RadialShaft:
 
 
 @dataclass(frozen=True)
-class Lip:
+class Lip(Strict):
     """The `[lip]` table: an elastomer lip around the shaft, in `sectors` of equal length.
 
     Preload and stiffness per length of circumference are given, or follow from the section of the lip: hoop and garter
@@ -89,8 +86,6 @@ class Lip:
 
     **Source** Hayden & Keller, NASA CR-120997 (1974), eqs. 2.9 to 2.11: the same per section of the lip.
     """
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     mass: Mass
     """Of all of the lip that moves with the contact line."""
@@ -129,14 +124,12 @@ class Lip:
 
 
 @dataclass(frozen=True)
-class Circumferential:
+class Circumferential(Strict):
     """The `[circumferential]` table: carbon segments around the shaft, pressed on it by a garter spring and against the
     flange of the housing by axial springs, on which they slide with Coulomb friction.
 
     Each segment is rigid and moves along its own middle radius; it touches the shaft there.
     """
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     mass: Mass
     """Of all segments together."""
@@ -161,10 +154,8 @@ class Circumferential:
 
 
 @dataclass(frozen=True)
-class RadialScene:
+class RadialScene(Strict):
     """Everything physical that a scenario of a radial seal describes, SI: its shaft, and a lip or segments."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     shaft: RadialShaft
     """The shaft, its speed and its runout."""

@@ -29,6 +29,7 @@ from ..units import (
     Varying,
     Velocity,
 )
+from . import Strict
 from .liquid import ThermalConductivity
 from .patterns import Grooves, Waviness
 
@@ -80,15 +81,13 @@ Material = Literal[
 
 
 @dataclass(frozen=True)
-class Body:
+class Body(Strict):
     """A ring as a hollow cylinder of one material: with it mass, transverse and polar inertia of the ring follow.
 
     **Source** integrals of the density over the cylinder, as in any table of moments of inertia.
     **Valid** a homogeneous ring of rectangular section, turning about its centre of mass.  Of a stepped ring, or one in
     a carrier that tilts with it, give mass and inertias themselves.
     """
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     inner_radius: Radius
     """Of the bore; 0 of a disk."""
@@ -153,7 +152,7 @@ def body_errors(body: Body) -> list[tuple[str, str, str]]:
 
 
 @dataclass(frozen=True)
-class ElasticRing:
+class ElasticRing(Strict):
     """The `[stator.elastic]` table: with it `[[stator.waviness]]` is the wave that the ring was made with, and less is
     left under load.
 
@@ -161,8 +160,6 @@ class ElasticRing:
     energy of bending and torsion.
     **Valid** a ring of uniform section, thin in its radius, waves of order 2 and more, small deflections.
     """
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     bending_stiffness: BendingStiffness
     """E J against bending out of the ring's plane."""
@@ -206,13 +203,11 @@ def elastic_errors(scene) -> list[tuple[str, str, str]]:
 
 
 @dataclass(frozen=True)
-class SecondarySeal:
+class SecondarySeal(Strict):
     """The `[stator.secondary_seal]` or `[rotor.secondary_seal]` table: `radius` (m) of the circle, and `line_friction`
     (F', N/m) or `friction_force` (axial breakaway force, 2 pi R F', N).  `law = "regularised"` takes the
     force and moment of Coulomb's law times s/sqrt(s^2 + width^2), where s^2 = v^2 + (R |q|)^2 of the axial speed v and
     the tilt rate q: it creeps where a real seal sticks."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     radius: Radius
     """Radius of the circle on which the O-ring slides."""
@@ -260,19 +255,15 @@ def secondary_seal_errors(seal) -> list[tuple[str, str, str]]:
 STATOR, ROTOR = 0, 1
 RING_NAMES = ("stator", "rotor")
 
-FORBID_UNKNOWN = {"extra": "forbid"}
-
 
 @dataclass(frozen=True)
-class Support:
+class Support(Strict):
     """Springs and dampers between a ring and its carrier (housing or shaft), SI.
 
     A ring of springs at `radius` r_s gives `tilt_stiffness = axial_stiffness r_s**2 / 2`, and the same for damping; or
     give the two tilt coefficients themselves.
     **Source** Green (1989), eq. 1-2 (sum over the circle of spring elements).
     """
-
-    __pydantic_config__ = FORBID_UNKNOWN
 
     axial_stiffness: Stiffness
     """All springs together, along the shaft axis."""
@@ -294,10 +285,8 @@ class Support:
 
 
 @dataclass(frozen=True)
-class AxialRunout:
+class AxialRunout(Strict):
     """One harmonic of the rotor's axial runout (m), `amplitude cos(order * shaft angle + phase)`."""
-
-    __pydantic_config__ = FORBID_UNKNOWN
 
     order: float
     """Waves per turn of the shaft."""
@@ -308,10 +297,8 @@ class AxialRunout:
 
 
 @dataclass(frozen=True)
-class Stator:
+class Stator(Strict):
     """The ring that does not turn (unless `speed` says so).  With a support it floats."""
-
-    __pydantic_config__ = FORBID_UNKNOWN
 
     mass: Mass = 0.0
     """Mass of the ring, if it floats; or a table `body`."""
@@ -342,11 +329,9 @@ class Stator:
 
 
 @dataclass(frozen=True)
-class Rotor:
+class Rotor(Strict):
     """The ring that turns with the shaft.  With a support it floats and has its own `misalignment`;
     rigid it has a `runout`.  Both turn with the shaft."""
-
-    __pydantic_config__ = FORBID_UNKNOWN
 
     mass: Mass = 0.0
     """Mass of the ring, if it floats; or a table `body`."""

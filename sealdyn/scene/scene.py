@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 from ..status import Status
 from ..units import Force, Height, Share, Tilt, TiltRate, Varying, Velocity, cut
+from . import Strict
 from .contact import Contact
 from .excitation import Housing, Shaft
 from .film import Film
@@ -11,11 +12,9 @@ from .rings import Rotor, Stator
 
 
 @dataclass(frozen=True)
-class Closing:
+class Closing(Strict):
     """The `[closing]` table: hydraulic balance and spring force (N).  Give two of balance ratio, spring force and film
     clearance and the third follows; give the clearance alone and the closing force is what holds it."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     balance_ratio: Share | None = None
     """Closing area over face area, of the high-pressure side."""
@@ -24,11 +23,9 @@ class Closing:
 
 
 @dataclass(frozen=True)
-class RingStart:
+class RingStart(Strict):
     """Where a floating ring starts, in place of what `run.start` gives: displacement, tilt, and their rates (m, rad,
     m/s, rad/s)."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     z: Height | None = None
     """Displacement along the shaft axis from equilibrium; positive closes a rotor's gap and opens a stator's."""
@@ -45,10 +42,8 @@ class RingStart:
 
 
 @dataclass(frozen=True)
-class Initial:
+class Initial(Strict):
     """The `[initial]` table; what it gives overrides `run.start`."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     rotor: RingStart = field(default_factory=RingStart)
     """Start of a floating rotor."""
@@ -62,10 +57,8 @@ class Initial:
 
 
 @dataclass(frozen=True)
-class Scene:
+class Scene(Strict):
     """Everything physical a scenario describes, SI."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     shaft: Shaft
     """Speed and whirl."""

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from ..units import Acceleration, Angle, AngularAcceleration, Displacement, Frequency, Listed, Tilt, Time
+from . import Strict
 
 # Ramps if none are given: so many periods of the frequency there, at most this share of the sweep.
 RAMP_PERIODS, RAMP_SHARE = 10.0, 0.1
@@ -23,10 +24,8 @@ CORNER = 16
 
 
 @dataclass(frozen=True)
-class Sweep:
+class Sweep(Strict):
     """What sweeps along the shaft axis and of tilt have in common; amplitudes in m or rad and their like per s^2."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     frequency: Listed[Frequency]
     """From and to: two of them, upwards or downwards."""

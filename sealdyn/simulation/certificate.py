@@ -218,11 +218,6 @@ def no_certificate(asked: float, why: str) -> dict:
     return {"asked": asked, **none, "said": f"no certificate: {why}"}
 
 
-def _ending(status: Status) -> str:
-    """How a run ended that has none, in words."""
-    return f"the run {'was ' if status == Status.INTERRUPTED else ''}{status}"
-
-
 def _interruption(asked: float, outcome: Outcome) -> tuple[dict, Outcome]:
     """The certificate and the outcome of a run that was interrupted while it was measured."""
     cause = Cause.INTERRUPTED
@@ -309,7 +304,8 @@ def certificate(
     outcome, interrupted if the measuring was."""
     asked = run.model.accuracy
     if outcome.status != Status.OK:
-        return no_certificate(asked, _ending(outcome.status)), outcome
+        was = "was " if outcome.status == Status.INTERRUPTED else ""
+        return no_certificate(asked, f"the run {was}{outcome.status}"), outcome
     measured = cells = None
     if seen:
         try:

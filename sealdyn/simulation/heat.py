@@ -185,7 +185,7 @@ def heat_cautions(scene, state: WarmState, friction: float = math.nan) -> list[C
     share = state.carried * state.rise / state.power if state.power else 0.0
     if share > CARRIES:
         words.append(f"leakage carries {100 * share:.3g} % of the heat: the rise is at most half as high as told")
-    at, sliding = found.sealed + state.rise, abs(initially(film_speed(scene)))
+    at, sliding = found.sealed + state.rise, abs(initially(scene.shaft.speed) - initially(scene.stator.speed))
     velocity = sliding * 0.5 * (film.inner_radius + film.outer_radius)
     step = 0.1
     low = max(liquid.lowest, at - step)
@@ -196,8 +196,3 @@ def heat_cautions(scene, state: WarmState, friction: float = math.nan) -> list[C
         factor = math.asinh(x) / (x * math.sqrt(1.0 + x * x))
         words.append(f"Nahme number {nahme:.3g}: its friction is {factor:.3g} of that of one temperature")
     return [Caution(Concern.HEATING, f"heat: {said}") for said in words]
-
-
-def film_speed(scene):
-    """Speed (rad/s) of the rotor beside the stator at the start."""
-    return initially(scene.shaft.speed) - initially(scene.stator.speed)

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import platform
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cache, cached_property
+from importlib.metadata import version
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
+from .. import __version__
 from ..archive import open_archive
+from ..kernel_cache import solvers_digest
 
 if TYPE_CHECKING:
     import xarray
@@ -23,6 +27,19 @@ import numpy as np
 
 from ..scenario.errors import nearest_of
 from ..scene.radial import RadialScene
+
+
+@cache
+def libraries() -> dict[str, str]:
+    """Versions of what decides the numbers; looked up once, since each costs milliseconds."""
+    names = ("numpy", "scipy", "scikit-sundae", "h5py", "numba")
+    return {name: version(name) for name in names} | {"python": platform.python_version()}
+
+
+def provenance(scenario) -> dict[str, Any]:
+    """What every archive says of how it was made: versions, and of the scenario name, question and overrides."""
+    return {"version": __version__, "solvers": solvers_digest(), "libraries": libraries(), "name": scenario.name,
+            "question": scenario.question, "overrides": list(scenario.overrides)}  # fmt: skip
 
 
 @dataclass(frozen=True)

@@ -3,30 +3,26 @@
 import json
 import math
 import os
-import platform
 import time as clock
 from collections.abc import Callable
 from contextlib import contextmanager
 from copy import deepcopy
 from dataclasses import asdict, replace
-from functools import cache
-from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
 
-from .. import __version__, archive
+from .. import archive
 from ..archive import ArchiveWriter, only_writer, partial_path
 from ..dynamics.extrema import H_LEG, H_RADIUS, H_TAU, H_THETA, H
 from ..dynamics.tally import Tally
-from ..kernel_cache import solvers_digest
 from ..scenario.reader import Scenario, with_values
 from ..scene.radial import RadialScene
 from ..solvers.contract import Status
 from ..solvers.integrate import Outcome, solve
 from ..solvers.methods import METHODS
 from .certificate import TrialRun, certificate, first_steps, judgement, next_plan
-from .result import Result, plain
+from .result import Result, plain, provenance
 from .selection import Plan, Start, prepare_run, set_start
 from .sinks import ArchiveSink, RadialSink, archived_series
 from .summary import parts, settled_friction
@@ -89,7 +85,7 @@ def _simulate(scenario, out, progress, stop, resume, allow_large) -> tuple[Resul
             out,
             scenario_text=scenario.text,
             resolved=scenario.resolved(),
-            meta=_meta(scenario, plan.method),
+            meta={**provenance(scenario), "solver": plan.method, "accuracy": scenario.run.accuracy},
             series=series,
             fields=fields,
             resume=resume,
@@ -238,26 +234,6 @@ def _restart(run, writer, sink) -> tuple | None:
             raise ValueError("no tolerance")
         sink.restore(point)
     return leg, tau, y, account
-
-
-@cache
-def _libraries() -> dict[str, str]:
-    """Versions of what decides the numbers; looked up once, since each costs milliseconds."""
-    names = ("numpy", "scipy", "scikit-sundae", "h5py", "numba")
-    return {name: version(name) for name in names} | {"python": platform.python_version()}
-
-
-def _meta(scenario, method) -> dict:
-    return {
-        "version": __version__,
-        "solvers": solvers_digest(),
-        "libraries": _libraries(),
-        "solver": method,
-        "accuracy": scenario.run.accuracy,
-        "question": scenario.question,
-        "overrides": list(scenario.overrides),
-        "name": scenario.name,
-    }
 
 
 def _events(run, outcome) -> list[dict]:

@@ -1,37 +1,50 @@
-"""One pass of a study: settings, points on all cores, answer, archive."""
+"""One pass of a study: settings, points on all cores, answer, archive; a study asked for in Python, with its answer in
+memory; and what a study may be told, and how long it takes: for help, for the JSON schema and for the page of keys."""
 
+from __future__ import annotations
+
+import dataclasses
 import importlib
 import json
 import os
-import platform
 import sys
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import nullcontext
 from dataclasses import asdict, dataclass, field, replace
-from importlib.metadata import version
+from functools import cached_property
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from time import monotonic
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from .. import __version__, studies
 from ..answers import as_json, plain
-from ..archive import file_stem, link_target, only_writer, write_study
+from ..archive import answer_as_dataset, file_stem, link_target, only_writer, write_study
 from ..films import film_of
-from ..kernel_cache import solvers_digest
 from ..numerics.parallel import Checkpoint, Results, evaluate, processes
 from ..quantities import in_words, reading_in
 from ..report.text import written_units
-from ..scenario.overrides import radius_key
-from ..scenario.reader import Scenario
+from ..scenario.errors import ScenarioError, nearest_of, scene_errors_of
+from ..scenario.overrides import radius_key, without_arrays
+from ..scenario.reader import Scenario, scenario_of
+from ..scenario.schema import json_schema, table_schema
 from ..scenario.settings import bare_settings, study_settings, without, written_settings
+from ..scenario.tables import ScenarioFile
 from ..scene import variants
 from ..scene.patterns import face_orders, faces_tilt, grooves_of, waves_of
 from ..scene.radial import RadialScene
 from ..scene.scene import SceneError
 from ..simulation.plausibility import declared, kind_of, unusual, usual_of
+from ..simulation.result import at_hand, provenance
 from ..status import Status
 from ..units import printable
-from . import Info
+from . import Info, study_names
+
+if TYPE_CHECKING:
+    import xarray
+
+    from ..report.charts.page import Figure
+
 
 # Time (s) of one process beyond which a study says after its first point what the others will take.
 LONG = 60.0
@@ -48,9 +61,8 @@ def journal_of(out: Path) -> Path:
 
 
 def study_module(name: str):
-    """The study `name` (underscored): its file, or `study.py` in its folder."""
-    found = importlib.import_module(f"{studies.__name__}.{name}")
-    return importlib.import_module(f"{found.__name__}.study") if hasattr(found, "__path__") else found
+    """The study `name` (underscored)."""
+    return importlib.import_module(f"{studies.__name__}.{name}")
 
 
 def study_info(name: str) -> Info:
@@ -105,7 +117,7 @@ class StudyContext:
         if self.progress:
             print(printable(words), file=sys.stderr, flush=True)
 
-    def alone(self) -> "StudyContext":
+    def alone(self) -> StudyContext:
         """For points that measure time: one after the other in this process, not to be kept for others, without
         progress."""
         return replace(self, crew=processes(1), results=None, progress=None)
@@ -176,20 +188,7 @@ def run_study(
         answer = as_json(replace(answer, notes=[*answer.notes, *notes]))
         answer = {"status": Status.OK, "message": " ".join(answer["verdict"]), "study": name, "left_out": left_out,
                   **answer}  # fmt: skip
-        libraries = {n: version(n) for n in ("numpy", "scipy", "scikit-sundae", "numba")} | {
-            "python": platform.python_version()
-        }
-        meta = {
-            "version": __version__,
-            "solvers": solvers_digest(),
-            "libraries": libraries,
-            "name": scenario.name,
-            "question": scenario.question,
-            "overrides": list(scenario.overrides),
-            "study": name,
-            "settings": asked_for,
-            "asks": info.asks,
-        }
+        meta = provenance(scenario) | {"study": name, "settings": asked_for, "asks": info.asks}
         write_study(out, scenario.text, scenario.resolved(), meta, answer, info.units, info.along, panels)
         journal.done()
     return {**answer, "archive": str(out)}
@@ -261,3 +260,184 @@ def _folder(path) -> Results:
     """Made at once: a folder that cannot be written is found out before the first point is done."""
     Path(path).mkdir(parents=True, exist_ok=True)
     return Results(path)
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What a study leaves: its name, `status` (a value of Status), a sentence, the `verdict` in sentences, the `answer`
+    as a dict (as `study --json` prints it, SI), and the path of the archive, or None and its `content` where it was
+    kept in memory only.
+
+    >>> answer = sealdyn.study("equilibrium", "fms.toml", points=11)
+    >>> answer.verdict[0]
+    'The seal rides at 10 um: the film carries the closing force there, stably.'
+    >>> answer.data.coords["curve.clearance"].attrs["units"]
+    'm'
+    >>> answer.plot().savefig("equilibrium.svg")
+    """
+
+    study: str
+    status: str
+    message: str
+    verdict: list[str]
+    answer: dict[str, Any] = field(repr=False)
+    archive: Path | None
+    content: bytes | None = field(default=None, repr=False)
+
+    @cached_property
+    def data(self) -> xarray.Dataset:
+        """Its numbers as an `xarray.Dataset` with units.  Of a study over keys the dimensions are the keys, the
+        variables its outputs and the `status` and `message` of each point; of others every list of numbers of the
+        answer, "curve.h_min", along the columns that its study names."""
+        info = study_info(self.study)
+        return answer_as_dataset(self.answer, info.units, info.along)
+
+    def plot(self) -> Figure:
+        """Its figure, of matplotlib; `figure.savefig("map.svg")` writes it."""
+        from ..report.panels import draw
+
+        with at_hand(self.archive, self.content) as path:
+            return draw(path)
+
+
+def study(
+    name: str,
+    source: Scenario | str | os.PathLike,
+    *,
+    out: str | os.PathLike | None = None,
+    workers: int | None = None,
+    scheduler: Any = None,
+    results: str | os.PathLike | None = None,
+    progress: Callable[[float, float, str], None] | None = None,
+    without: Iterable[str] = (),
+    **settings: Any,
+) -> Answer:
+    """Answer a question about a scenario, or that of a TOML file or an archive: `sealdyn.study("sweep", scenario,
+    vary="rotor.runout=0:1 mrad:21")`.  Without `out` nothing is left on disk.
+
+    `name` with hyphens or underscores; `settings` those of `[study.NAME]`; `without` "contact" or "secondary-seal";
+    the others as in `run_study`.
+    Raises ScenarioError for what cannot be studied, ClusterError, ArchiveError.
+
+    >>> answer = sealdyn.study("sweep", "fms.toml", vary="rotor.runout=10,20 urad", outputs="h_min.value")
+    >>> 1e6 * answer.data["h_min.value"].values.round(8)
+    array([9.68, 9.36])
+    """
+    scenario, name = scenario_of(source), name.replace("_", "-")
+    names = study_names()
+    if name not in names:
+        hint = nearest_of(name, names)
+        raise ScenarioError(scenario.name, "study", f'"{name}"', f"one of {', '.join(names)}{hint}")
+    how = {"workers": workers, "scheduler": scheduler, "results": results, "progress": progress}
+    how |= {"leave_out": [without] if isinstance(without, str) else list(without), "flags": without_arrays(settings)}
+    with scene_errors_of(scenario.name):
+        if out is not None:
+            answer = run_study(name, scenario, out, **how)
+            return _answer(answer, Path(answer["archive"]))
+        with TemporaryDirectory() as folder:
+            answer = run_study(name, scenario, Path(folder) / "study.h5", **how)
+            return _answer({**answer, "archive": None}, None, Path(answer["archive"]).read_bytes())
+
+
+def _answer(answer: dict, archive: Path | None, content: bytes | None = None) -> Answer:
+    told = {"status": str(answer["status"]), "message": answer["message"], "verdict": answer["verdict"]}
+    return Answer(answer["study"], **told, answer=answer, archive=archive, content=content)
+
+
+@dataclass(frozen=True)
+class Setting:
+    """A setting of a study: its key, what it holds with the SI unit, its default as one types it ("" if there is none),
+    and what it means."""
+
+    key: str
+    holds: str
+    default: str
+    meaning: str
+
+
+def about(name: str) -> str:
+    """What study `name` (hyphens or underscores) is, in a line."""
+    return " ".join((study_module(name.replace("-", "_")).__doc__ or "").split("\n\n")[0].split())
+
+
+def settings_of(name: str) -> list[Setting]:
+    """The settings of study `name`."""
+    kind = study_module(name.replace("-", "_")).Settings
+    table = table_schema(kind)
+    rows = []
+    for one in dataclasses.fields(kind):
+        holds = table["properties"][one.name]
+        default = "" if one.default in (None, (), "") else typed(one.default)
+        rows.append(Setting(one.name, words_of(holds), default, holds["description"].splitlines()[0]))
+    return rows
+
+
+def refuse_unknown_studies(scenario) -> None:
+    """Raises ScenarioError for a table [study.NAME] of a study that there is not."""
+    names = study_names()
+    for name in scenario.study:
+        if name.replace("_", "-") not in names:
+            expected = f"one of {', '.join(names)}{nearest_of(name.replace('_', '-'), names)}"
+            raise ScenarioError(scenario.name, f"study.{name}", "an unknown study", expected)
+
+
+def refuse_settings(scenario) -> list[str]:
+    """What is odd in the tables [study.NAME], in sentences.  Raises ScenarioError for what its study does not take."""
+    said = []
+    for name in scenario.study:
+        study = name.replace("-", "_")
+        study_settings(scenario, study, study_module(study).Settings, {})
+        said += setting_warnings(scenario, study, {})
+    return said
+
+
+def help_text(name: str) -> str:
+    """What study `name` is, its settings and its time; of no study which there are."""
+    if name.replace("_", "-") not in study_names():
+        return "\n\n".join(f"{known}: {about(known)}" for known in study_names())
+    lines = [
+        f"--{s.key.replace('_', '-')} ({s.holds}{f'; default {s.default}' if s.default else ''}): {s.meaning}"
+        for s in settings_of(name)
+    ]
+    return "\n\n".join([about(name), *lines, f"Time: {time_of(name)}."])
+
+
+def time_of(name: str) -> str:
+    """How long study `name` takes, in words."""
+    words, seconds = study_info(name.replace("-", "_")).timed
+    return f"{seconds} s of processor time on one core with `{words}` and no other settings"
+
+
+def words_of(holds: dict) -> str:
+    """What a value of a JSON schema is, in words: "time, s", "integer", "list of number or string"."""
+    if "quantity" in holds:
+        several = "list of " if holds.get("type") == "array" else ""
+        return f"{several}{holds['quantity']}, {holds['unit']}"
+    if "enum" in holds:
+        return ", ".join(json.dumps(word) for word in holds["enum"])
+    if "anyOf" in holds:
+        return " or ".join(dict.fromkeys(map(words_of, holds["anyOf"])))
+    if holds.get("type") == "array":
+        return f"list of {words_of(holds.get('items', {}))}"
+    return {"boolean": "true or false"}.get(holds.get("type"), holds.get("type", "value"))
+
+
+def typed(value) -> str:
+    """A value as one types it."""
+    return f"{value:g}" if isinstance(value, float) else json.dumps(value)
+
+
+def schema_with_studies(file: type = ScenarioFile) -> dict:
+    """The JSON schema of scenario files (`file`: those of face seals, or reader.RadialFile) with the settings of every
+    study."""
+    schema = json_schema(file)
+    tables = {name.replace("-", "_"): _table(name) for name in study_names()}
+    study = schema["properties"]["study"]
+    told = {"type": "object", "properties": tables, "additionalProperties": False}
+    return {**schema, "properties": {**schema["properties"], "study": {"description": study["description"], **told}}}
+
+
+def _table(name: str) -> dict:
+    """The schema of the settings of a study, with what it is and how long it takes."""
+    table = table_schema(study_module(name.replace("-", "_")).Settings)
+    return {**table, "description": f"{about(name)}  {time_of(name)}.", "additionalProperties": False}

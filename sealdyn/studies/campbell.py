@@ -43,8 +43,6 @@ CYCLE = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh")
 class Settings:
     """Speeds, and how the figure is drawn."""
 
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
-
     speed_from: Speed = 0.0
     """Lowest speed."""
     speed_to: Speed | None = None

@@ -1,7 +1,8 @@
 """Critical speed: the stability threshold of the aligned seal by three independent methods, and the whirl beyond it.
 
 Linear: published formula with the film's own coefficients, eigenvalues, growth of a small disturbance in time.
-Beyond: the family of circular whirls that leaves the threshold (analysis/whirl), and runs in time that must agree.
+Beyond: the family of circular whirls that leaves the threshold (analysis/rotating_wave.py), and runs in time that must
+agree.
 """
 
 from dataclasses import dataclass
@@ -11,18 +12,8 @@ from typing import Literal
 
 import numpy as np
 
-from ..analysis.whirl import (
-    bounded_or_not,
-    branch,
-    compared,
-    contact_tilt_aligned,
-    family_columns,
-    free_model,
-    growth_rate,
-    kind_of,
-    linear_growth,
-    tipping_disturbance,
-)
+from ..analysis.rotating_wave import branch, compared, contact_tilt_aligned, family_columns, free_model, kind_of
+from ..analysis.whirl_in_time import bounded_or_not, growth_rate, linear_growth, tipping_disturbance
 from ..answers import Answer, Axis, Level, Panel, Series, Table
 from ..closed_form import fmr_critical_speed, fms_critical_speed
 from ..dynamics.linearisation import moves_with_speed
@@ -67,8 +58,6 @@ FATES = {"decays": ("good", "dies out"), "bounded": ("blue", "bounded"), "contac
 @dataclass(frozen=True)
 class Settings:
     """How growth is measured in time, and whether to go beyond linear."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     method: Literal["adams", "bdf", "dop853", "radau"] = "adams"
     """Integrator."""
@@ -141,7 +130,7 @@ def growth(scene, point: dict) -> dict:
 
 def in_time(scene, model, eigenvalue, how, tools, pace) -> dict:
     """Bracketing of the threshold by growth and decay; without a threshold, decay at a few speeds."""
-    fastest = FASTEST / scene.film.outer_radius
+    fastest, found = FASTEST / scene.film.outer_radius, {"value": None, "uncertainty": None}
     if eigenvalue is None:
         tried = [factor * min(pace, fastest / 10.0) for factor in TRIED]
         # Slow shafts on stiff films: nothing here is as close to its threshold as Adams' small damping would matter.
@@ -157,22 +146,21 @@ def in_time(scene, model, eigenvalue, how, tools, pace) -> dict:
             said = _unmeasured(rows) or "neither growth nor decay beyond the method's own"
         if speeds == tried and pace > fastest / 10.0:
             said += f", up to {FASTEST:g} m/s at the outer radius"
-        found = {"value": None, "uncertainty": None, "reason": said}
+        found["reason"] = said
         # That there is none is not confirmed: growth here and decay there, or neither.
         undecided = {} if len(signs) == 1 else {"status": Status.FAILED}
         return {"time_domain": found, "growth": columns(rows, speeds), **undecided}
+    speeds = [share * eigenvalue for share in SHARES]
     if eigenvalue > fastest:
         edge = in_words("m/s", eigenvalue * scene.film.outer_radius)
-        reason = f"not run, {edge} at the outer radius are of no seal"
-        speeds = [share * eigenvalue for share in SHARES]
+        found["reason"] = f"not run, {edge} at the outer radius are of no seal"
         rows = [{"eigenvalue": linear_growth(free_model(scene, w))} for w in speeds]
-        return {"time_domain": {"value": None, "uncertainty": None, "reason": reason}, "growth": columns(rows, speeds)}
-    speeds = [share * eigenvalue for share in SHARES]
+        return {"time_domain": found, "growth": columns(rows, speeds)}
     rows = tools.map(partial(growth, scene), [{**how, "speed": w} for w in speeds], "growth")
     around = between(rows, speeds)
     if around is None:
-        reason = _unmeasured(rows) or "growth does not change sign within 5 % of the eigenvalues' threshold"
-        return {"time_domain": {"value": None, "uncertainty": None, "reason": reason}, "growth": columns(rows, speeds)}
+        found["reason"] = _unmeasured(rows) or "growth does not change sign within 5 % of the eigenvalues' threshold"
+        return {"time_domain": found, "growth": columns(rows, speeds)}
     # Two more on either side of where the line between them crosses zero: a bracket of a few hundred-thousandths.
     crossing, _ = line_crossing(*around)
     near = [crossing * (1 - NARROW), crossing * (1 + NARROW)]

@@ -10,7 +10,7 @@ from typing import Annotated
 import numpy as np
 
 from ..analysis import radial_rules
-from ..answers import Answer, Axis, Level, Panel, Series, Table
+from ..answers import Answer, Axis, Level, Panel, Series, Table, table_of
 from ..dynamics.intervals import largest_value
 from ..quantities import in_words, number, reading_in
 from ..radial_seals.followers import followers_of, largest_eccentricity
@@ -194,10 +194,10 @@ def _notes(numbers) -> list[str]:
 
 def _tables(numbers) -> list[Table]:
     """The runs beside the closed form."""
-    columns = [("1", "curve"), ("speed", "speed"), ("m", "by runs"), ("m", "closed form"), ("1", "apart")]
-    names = ("speed", "eccentricity", "closed_form", "apart")
-    rows = [[numbers["names"][row["curve"]], *(row.get(name) for name in names)] for row in numbers["runs"]]
-    return [Table("runs", columns, rows)]
+    columns = [("1", "curve", "curve"), ("speed", "speed", "speed"), ("m", "by runs", "eccentricity"),
+               ("m", "closed form", "closed_form"), ("1", "apart", "apart")]  # fmt: skip
+    rows = [row | {"curve": numbers["names"][row["curve"]]} for row in numbers["runs"]]
+    return [table_of("runs", columns, rows)]
 
 
 def _panels(numbers) -> list[Panel]:

@@ -10,8 +10,9 @@ from functools import partial
 
 import numpy as np
 
-from ..analysis.whirl import free_model, growth_rate
-from ..answers import Answer, Axis, Level, Panel, Series, Table
+from ..analysis.rotating_wave import free_model
+from ..analysis.whirl_in_time import growth_rate
+from ..answers import Answer, Axis, Level, Panel, Series, Table, table_of
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
 from ..dynamics.warm_state import at_work
@@ -227,20 +228,18 @@ def _notes(numbers) -> list[str]:
 
 def _tables(numbers) -> list[Table]:
     """What is each method's own at the accuracy told, the long precession, and what the default method leaves."""
-    cost = ("1", "right-hand sides per turn")
-    columns = [("1", "method"), ("1", "growth per turn"), cost]
-    growths = [[row["method"], row["growth"], row["cost"]] for row in _told(numbers)]
+    method, cost = ("1", "method", "method"), ("1", "right-hand sides per turn", "cost")
     drift = [row for row in numbers["drift"] if row["turns"] != numbers["turns"] or row["accuracy"] == TOLD]
-    precession = [("1", "method"), ("1", "turns"), ("1", "energy drift per turn"), ("1", "of angular momentum"), cost]
-    names = ("method", "turns", "energy", "momentum", "cost")
-    tables = [Table("growth", columns, growths),
-              Table("drift", precession, [[row.get(name) for name in names] for row in drift])]  # fmt: skip
+    precession = [method, ("1", "turns", "turns"), ("1", "energy drift per turn", "energy"),
+                  ("1", "of angular momentum", "momentum"), cost]  # fmt: skip
+    tables = [table_of("growth", [method, ("1", "growth per turn", "growth"), cost], _told(numbers)),
+              table_of("drift", precession, drift)]  # fmt: skip
     found = numbers["resolved"] or {}
     if "ratio" in found:
-        columns = [("1", "default method"), ("growth_rate", "its own growth"), ("growth_rate", "resolved growth"),
-                   ("growth_rate", "uncertainty"), ("1", "ratio")]  # fmt: skip
-        names = ("method", "numerical_damping", "rate", "uncertainty", "ratio")
-        tables.append(Table("resolution", columns, [[found[name] for name in names]]))
+        columns = [("1", "default method", "method"), ("growth_rate", "its own growth", "numerical_damping"),
+                   ("growth_rate", "resolved growth", "rate"), ("growth_rate", "uncertainty", "uncertainty"),
+                   ("1", "ratio", "ratio")]  # fmt: skip
+        tables.append(table_of("resolution", columns, [found]))
     return tables
 
 

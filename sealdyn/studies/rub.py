@@ -10,11 +10,18 @@ from functools import partial
 
 import numpy as np
 
-from ..analysis.continuation import FilmCollapsed, frozen_at_end, neighbours, sweep_branch
-from ..analysis.poincare_map import SAMPLES, PeriodMap, share_below
-from ..analysis.whirl import free_model
-from ..analysis.whirl.time_domain import whirl_fate
-from ..answers import Answer, Table
+from ..analysis.poincare_map import (
+    SAMPLES,
+    FilmCollapsed,
+    PeriodMap,
+    frozen_at_end,
+    neighbours,
+    share_below,
+    sweep_branch,
+)
+from ..analysis.rotating_wave import free_model
+from ..analysis.whirl_in_time import whirl_fate
+from ..answers import Answer, Table, table_of
 from ..numerics import time_series
 from ..numerics.piecewise_linear import initially
 from ..numerics.time_series import horizon, tangent_product
@@ -198,7 +205,7 @@ def _tables(numbers) -> list[Table]:
              ("share", "contact, of time", "contact_share"), ("share", "of closing force", "contact_force"),
              ("1", "exponent per period", "exponent"), ("1", "+-", "uncertainty"),
              ("1", "evaluations per turn", "evaluations"))  # fmt: skip
-    tables = [_of_rows("diagram", names, numbers["rows"])]
+    tables = [table_of("diagram", names, numbers["rows"])]
     if numbers["methods"]:
         entries, (one, other) = numbers["methods"]["invariants"], numbers["methods"]["names"]
         columns = [("1", "average"), ("1", one), ("1", "+-"), ("1", other), ("1", "+-"), ("1", "agree")]
@@ -220,12 +227,8 @@ def _tables(numbers) -> list[Table]:
             ("share", "contact, of time", "contact_share"),
             ("share", "of closing force", "contact_force"),
         )
-        tables.append(_of_rows("whirl", names, numbers["whirl"]["rows"]))
+        tables.append(table_of("whirl", names, numbers["whirl"]["rows"]))
     return tables
-
-
-def _of_rows(name: str, names, rows) -> Table:
-    return Table(name, [held[:2] for held in names], [[row.get(key) for *_, key in names] for row in rows])
 
 
 # Separation that makes a forecast worthless, in units of the attractor's spread; the tighter of two correct runs.

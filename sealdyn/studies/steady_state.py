@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 from ..analysis.shooting import NoOrbit, Shooter
-from ..answers import Answer, Axis, Level, Panel, Series, Table
+from ..answers import Answer, Axis, Level, Panel, Series, Table, table_of
 from ..dynamics import modes
 from ..dynamics.model import Model
 from ..dynamics.modes import steady_extremes
@@ -150,8 +150,8 @@ def _tables(numbers) -> list[Table]:
         names = (("share", "of critical speed", "part"), ("speed", "speed", "speed"),
                  ("1", "periods by shooting", "shooting"), ("1", "by waiting", "transient"),
                  ("1", "waiting ends", "transient_ends"), ("1", "failed", "failed"))  # fmt: skip
-        rows = [[row.get(key) or None for *_, key in names] for row in numbers["near_threshold"]]
-        tables.append(Table("cost near the threshold", [name[:2] for name in names], rows))
+        rows = [{key: value or None for key, value in row.items()} for row in numbers["near_threshold"]]
+        tables.append(table_of("cost near the threshold", names, rows))
     return tables
 
 

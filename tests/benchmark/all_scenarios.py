@@ -11,12 +11,16 @@ import json
 import math
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
+from textwrap import shorten
 
 import sealdyn
+from sealdyn.answers import Panel, Series
 from sealdyn.archive import read_study
 from sealdyn.report.charts import study_work_precision as chart
-from sealdyn.report.charts.page import look, save, sheet, shortened
+from sealdyn.report.charts.page import look, save, sheet
+from sealdyn.report.panels import draw_panel
 from sealdyn.studies._runner import run_study
 
 ROOT = Path(__file__).parents[2]
@@ -79,18 +83,21 @@ def draw(paths, out):
             ax = figure.add_subplot(grid[k // across, k % across])
             answer = info["answer"]
             title = f"{info['name'].replace('_', ' ')}, {answer['scene']['turns']:.4g} turns"
-            chart.precision(ax, answer, "over_time", "wall", labels=False, title=title)
+            panel = chart.precision(answer, "over_time", "wall", title=title)
+            draw_panel(ax, replace(panel, x=replace(panel.x, label="error")))
             winners = [f"{row['error']:.0e} {chart.SHORT[row['method']]}" for row in answer["fastest"] if row["method"]]
             note = "fastest: " + ", ".join(winners) if winners else answer["fastest"][0].get("why", "")
             ax.set_title(f"{title}\n", loc="left")
-            ax.text(0, 1.025, shortened(note, 62), transform=ax.transAxes, fontsize=8)
+            ax.text(0, 1.025, shorten(note, 62, placeholder=" …"), transform=ax.transAxes, fontsize=8)
             if k % across:
                 ax.set_ylabel("")
         key = figure.add_subplot(grid[len(paths) // across, len(paths) % across])
         key.axis("off")
-        for name, (colour, line, marker) in chart.LOOKS.items():
-            key.plot([], [], line, color=colour, marker=marker, ms=5, label=chart.SHORT[name])
-        key.plot([], [], "kx", ms=7, mew=1.6, ls="none", label="did not end well, or too slow")
+        looks = {chart.SHORT[name]: style for name, style in chart.LOOKS.items()}
+        looks["did not end well, or too slow"] = "black cross large"
+        draw_panel(
+            key, Panel(series=[Series("line", [], [], label=name, style=style) for name, style in looks.items()])
+        )
         key.legend(loc="center left", ncols=2, fontsize=9)
         return save(figure, out)
 

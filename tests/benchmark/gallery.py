@@ -15,7 +15,7 @@ from pathlib import Path
 
 from sealdyn.archive import read_study
 from sealdyn.report.charts.study_work_precision import SHORT
-from sealdyn.studies.work_precision.study import NAMES
+from sealdyn.studies.work_precision import NAMES
 
 GALLERY = Path(__file__).parents[2] / "outputs" / "gallery"
 PAGE = GALLERY / "README.md"

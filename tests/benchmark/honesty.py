@@ -48,7 +48,7 @@ from judge import (
 from scenes import prepared, set_start
 
 from sealdyn.films.reynolds.film import FILM
-from sealdyn.report.charts import palette
+from sealdyn.report.charts import page as palette
 from sealdyn.scenario.tables import Run
 from sealdyn.scene.patterns import tilt_is_imposed
 from sealdyn.simulation.certificate import certificate, first_steps, judgement, next_plan

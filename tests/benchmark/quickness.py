@@ -26,7 +26,7 @@ import sealdyn
 import sealdyn.simulation.simulate
 from sealdyn.kernel_cache import solvers_digest
 from sealdyn.simulation.certificate import no_certificate
-from sealdyn.studies.work_precision.study import machine
+from sealdyn.studies.work_precision import machine
 
 ROOT = Path(__file__).parents[2]
 IMPORTS = ("-c", "import numba, scipy.integrate, h5py, pydantic")

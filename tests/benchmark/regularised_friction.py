@@ -17,7 +17,7 @@ import numpy as np
 from scenes import started
 
 import sealdyn
-from sealdyn.report.charts import palette
+from sealdyn.report.charts import page as palette
 from sealdyn.scene.film import Coefficients
 from sealdyn.scene.rings import Rotor, SecondarySeal
 from sealdyn.scene.scene import Initial, RingStart

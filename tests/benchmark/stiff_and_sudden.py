@@ -220,7 +220,7 @@ def draw(found, path):
     matplotlib.use("Agg")
     from matplotlib import pyplot
 
-    from sealdyn.report.charts import palette
+    from sealdyn.report.charts import page as palette
 
     colours = dict(zip((*PACKAGE, *SCIPY), (palette.BLUE, palette.GREEN, palette.SKY, palette.PURPLE,
                    palette.VERMILLION, palette.GREY, palette.ORANGE), strict=True))  # fmt: skip

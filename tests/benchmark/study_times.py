@@ -15,7 +15,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from sealdyn.scenario.shipped import shipped_paths
+from sealdyn.scenario.templates import shipped_paths
 from sealdyn.studies import study_names
 from sealdyn.studies._runner import study_info
 

@@ -10,7 +10,7 @@ import sys
 from pathlib import Path
 
 from sealdyn.analysis import sources
-from sealdyn.analysis.validation import brief, checks, source_names
+from sealdyn.analysis.sources import brief, checks, source_names
 
 RESULTS = Path(sources.__file__).with_name("results.json")
 

@@ -12,9 +12,9 @@ from PIL import Image
 
 from sealdyn.archive import FIELD_TIME, column, field
 from sealdyn.radial_seals.model import RadialModel, RadialRun
-from sealdyn.report.charts.followers_animation import REACH, Around, panels
+from sealdyn.report.charts.followers import REACH, Around, panels
 from sealdyn.report.charts.moving import moments, stage
-from sealdyn.report.charts.palette import CONTACT, FILM
+from sealdyn.report.charts.page import CONTACT, FILM
 from sealdyn.report.charts.record import Run
 from sealdyn.scenario.reader import read_scenario
 from sealdyn.simulation.simulate import simulate

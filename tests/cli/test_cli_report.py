@@ -8,7 +8,7 @@ import pytest
 from command import REFERENCE, sealdyn
 from PIL import Image
 
-from sealdyn.analysis.validation import sources_of_film
+from sealdyn.analysis.sources import sources_of_film
 from sealdyn.report.review import told
 
 BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)

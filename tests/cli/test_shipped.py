@@ -13,7 +13,7 @@ from command import SCENARIOS, finished, sealdyn, started
 
 import sealdyn as package
 from sealdyn import ScenarioError, example, examples, read_scenario
-from sealdyn.analysis.validation import source_names
+from sealdyn.analysis.sources import source_names
 from sealdyn.cli import CHARTS, FIRST_STEPS
 from sealdyn.scenario.templates import kinds
 from sealdyn.studies import study_names

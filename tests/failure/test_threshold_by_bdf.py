@@ -11,7 +11,8 @@ import pytest
 from oracles import tilt_roots
 from scenes import INERTIA, SUPPORT, fmr
 
-from sealdyn.analysis.whirl import RotatingWave, contact_tilt_aligned, free_model, growth_rate, least_damped
+from sealdyn.analysis.rotating_wave import RotatingWave, contact_tilt_aligned, free_model, least_damped
+from sealdyn.analysis.whirl_in_time import growth_rate
 from sealdyn.closed_form import film_coefficients, fmr_critical_speed
 from sealdyn.dynamics.run_state import RunState
 from sealdyn.solvers.contract import Counts

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from sealdyn.analysis.elastic_ring import release
 from sealdyn.analysis.sources import lebeck_1979
 from sealdyn.dynamics.elastic_ring import at_rest, operating_point, operating_points
 from sealdyn.scene.rings import ElasticRing
+from sealdyn.studies.elastic_ring import release
 
 RING = ElasticRing(bending_stiffness=77.0, torsion_ratio=6.0, radius=47.54e-3)
 HALF = lebeck_1979.HALF

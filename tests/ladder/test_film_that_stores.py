@@ -11,7 +11,7 @@ from radial_cells import film_of
 from scenes import CLEARANCE, R_I, R_O, SPEED, SUPPORT, TILT_SCALE, film, fmr, fms, fmsr, ring, run
 from scipy.linalg import eig
 
-from sealdyn.analysis.whirl.time_domain import fit_growth
+from sealdyn.analysis.whirl_in_time import fit_growth
 from sealdyn.dynamics import modes, stability_thresholds
 from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.modes import Harmonic

@@ -12,8 +12,7 @@ import pytest
 from oracles import green_film
 from scipy.integrate import quad, solve_ivp
 
-from sealdyn.analysis.whirl import free_model
-from sealdyn.analysis.whirl.mode_over_speed import tilt_mode
+from sealdyn.analysis.rotating_wave import free_model, tilt_mode
 from sealdyn.dynamics import stability_thresholds
 from sealdyn.dynamics.stability_thresholds import one_by_one
 from sealdyn.numerics.time_series import centres, tracked

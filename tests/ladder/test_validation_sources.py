@@ -10,8 +10,17 @@ from command import sealdyn
 
 from sealdyn import closed_form
 from sealdyn import films as films_there_are
-from sealdyn.analysis.sources import green_1989, ludwig_allen, zuk_1972
-from sealdyn.analysis.validation import brief, report, source_module, source_names, sources_of_film, stored_rows
+from sealdyn.analysis.sources import (
+    brief,
+    green_1989,
+    ludwig_allen,
+    report,
+    source_module,
+    source_names,
+    sources_of_film,
+    stored_rows,
+    zuk_1972,
+)
 from sealdyn.closed_form import zuk_1972 as zuk
 
 COMMON = {"source", "quantity", "published", "deviation", "roads_apart", "verdict", "remark"}
@@ -52,7 +61,7 @@ def test_sources_are_the_files_there_are():
     assert source_names() == ["green-1989", "lebeck-1979", "lebeck-1979-plateaus", "ludwig-allen", "zuk-1972"]
     for name in source_names():
         source = source_module(name)
-        assert source.__doc__ and source.TITLE and source.HEAD
+        assert source.__doc__ and source.TITLE and source.COLUMNS
 
 
 @pytest.mark.parametrize("name", ["dams", "rings"])

@@ -8,7 +8,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import sealdyn
-from sealdyn.archive import tables_as_dataset
+from sealdyn.archive import answer_as_dataset
 
 SCENARIO = sealdyn.read_scenario(Path(__file__).parents[2] / "scenarios" / "fms_reference.toml", ["run.turns=4"])
 
@@ -61,7 +61,7 @@ def test_rows_of_an_answer_are_a_dimension():
 
 
 def test_a_row_that_failed_hides_no_other():
-    data = tables_as_dataset({"rows": [{"failed": "collapsed"}, {"h_min": 2e-6}]}, {"rows/h_min": "m"}, {})
+    data = answer_as_dataset({"rows": [{"failed": "collapsed"}, {"h_min": 2e-6}]}, {"rows/h_min": "m"}, {})
     assert data["rows.h_min"].dims == ("rows",) and np.isnan(data["rows.h_min"][0]) and data["rows.h_min"][1] == 2e-6
 
 
@@ -73,7 +73,7 @@ def test_axes_that_are_not_told_are_not_guessed():
         "one": {"matrix": [[1.0, 2.0]] * 2, "odd": [1.0]},
         "verdict": [],
     }
-    data = tables_as_dataset(answer, {"speed": "rad/s"}, {"one": ("speed",)})
+    data = answer_as_dataset(answer, {"speed": "rad/s"}, {"one": ("speed",)})
     assert data["lines"].dims == ("lines.0",) and data["one.odd"].dims == ("one.odd.0",)
     assert data["one.matrix"].dims == ("speed", "one.matrix.1") and "verdict" not in data
     assert data.speed.values.tolist() == [1.0, 2.0] and data.speed.attrs["units"] == "rad/s"
@@ -92,7 +92,7 @@ VALUES = st.recursive(
 @example({"speed": None, "failed": [{"speed": None}]}, {"one": ("speed", "speed"), "failed": ("one", "failed")})
 @given(st.dictionaries(NAMES, VALUES, max_size=4), st.dictionaries(NAMES, st.tuples(NAMES, NAMES), max_size=3))
 def test_any_answer_can_be_shown(answer, along):
-    data = tables_as_dataset(answer, {"speed": "rad/s"}, along)
+    data = answer_as_dataset(answer, {"speed": "rad/s"}, along)
     for name, values in answer.items():
         if isinstance(values, list) and values and all(isinstance(value, float) for value in values):
             assert data[name].values.tolist() == values

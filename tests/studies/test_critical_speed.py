@@ -10,8 +10,9 @@ from in_process import InProcess
 from oracles import tilt_roots
 from scenes import BARRIER, INERTIA, SUPPORT, fmr, fms
 
-from sealdyn.analysis.whirl import free_model, growth_rate, time_domain, tipping_disturbance
-from sealdyn.analysis.whirl.time_domain import tilt_in_time
+from sealdyn.analysis import whirl_in_time as time_domain
+from sealdyn.analysis.rotating_wave import free_model
+from sealdyn.analysis.whirl_in_time import growth_rate, tilt_in_time, tipping_disturbance
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.simulation.simulate import simulate_in_memory
 from sealdyn.studies import critical_speed

@@ -10,7 +10,7 @@ import xarray
 from command import sealdyn as program
 
 import sealdyn
-from sealdyn.archive import answer_tables, read_study, tables_as_dataset, write_study
+from sealdyn.archive import answer_as_dataset, answer_tables, read_study, write_study
 from sealdyn.archive.tables import columns
 from sealdyn.report.panels import draw
 from sealdyn.studies import study_names
@@ -122,7 +122,7 @@ def test_rows_within_rows_are_a_table_that_knows_its_rows():
         {"net": 4.0, "ways": []},
         {"net": 5.0, "ways": [{"to": 6.0}]},
     ]
-    data = tables_as_dataset({"points": rows}, {"to": "m"}, {})
+    data = answer_as_dataset({"points": rows}, {"to": "m"}, {})
     assert data["points.ways.to"].values.tolist() == [2.0, 3.0, 6.0] and data["points.ways.to"].attrs["units"] == "m"
     assert data["points.ways.points"].values.tolist() == [0.0, 0.0, 2.0]
 

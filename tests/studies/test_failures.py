@@ -12,7 +12,7 @@ from sealdyn.archive import read_study
 from sealdyn.report.panels import draw
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.studies._runner import run_study
-from sealdyn.studies.failures.study import chosen_for, exhibit_names, place_of, shown
+from sealdyn.studies.failures import chosen_for, exhibit_names, place_of, shown
 
 SCENARIO = Path(__file__).parents[2] / "scenarios" / "fmr_reference.toml"
 KEYS = {"item", "title", "failing", "failing_error", "survivor", "survivor_error", "unit", "default"}

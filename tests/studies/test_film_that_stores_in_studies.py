@@ -8,19 +8,17 @@ from in_process import InProcess
 from radial_cells import film_of
 
 from sealdyn import read_scenario
-from sealdyn.analysis.arrangements import seals_of
 from sealdyn.dynamics import interface, modes, stability_thresholds
 from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.stability_thresholds import one_by_one
 from sealdyn.scenario.reader import with_values
 from sealdyn.scene.variants import frozen_at_start
 from sealdyn.simulation.simulate import simulate_in_memory
-from sealdyn.studies import campbell, contact_onset, critical_speed, steady_state
-from sealdyn.studies.runup.load_ramp import overshoot, quasi_static
+from sealdyn.studies import campbell, contact_onset, critical_speed, stability, steady_state, transmissibility
+from sealdyn.studies.runup import Settings as RunupSettings
 from sealdyn.studies.runup.plan import planned
-from sealdyn.studies.runup.study import Settings as RunupSettings
-from sealdyn.studies.stability import study as stability
-from sealdyn.studies.transmissibility import study as transmissibility
+from sealdyn.studies.runup.ramp_run import overshoot, quasi_static
+from sealdyn.studies.transmissibility.arrangements import seals_of
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 STORING = 1e-6

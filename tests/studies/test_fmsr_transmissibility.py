@@ -10,8 +10,8 @@ from oracles import tilt_roots, tilts_in_turning_axes
 from sealdyn import read_scenario
 from sealdyn.closed_form import GREEN_1989_ROUNDED
 from sealdyn.scene.variants import arrangement, counterpart, with_both_flexible_rings
-from sealdyn.studies.transmissibility import study as transmissibility
-from sealdyn.studies.transmissibility.study import Settings
+from sealdyn.studies import transmissibility
+from sealdyn.studies.transmissibility import Settings
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 K_F, D_F = 5790.583579096709, 4.082073628553869

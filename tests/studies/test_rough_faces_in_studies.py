@@ -11,8 +11,7 @@ from oracles import christensen, opening_force
 from scenes import started
 from scipy.optimize import brentq
 
-from sealdyn.analysis.arrangements import seals_of
-from sealdyn.analysis.whirl import growth_rate
+from sealdyn.analysis.whirl_in_time import growth_rate
 from sealdyn.dynamics.model import Model
 from sealdyn.scenario.reader import parse_scenario, with_values
 from sealdyn.scene.variants import frozen_at_start, unforced, without
@@ -21,7 +20,7 @@ from sealdyn.solvers.integrate import solve
 from sealdyn.studies import coefficients, critical_speed, equilibrium
 from sealdyn.studies._runner import run_study
 from sealdyn.studies.stability.grid import Grid
-from sealdyn.studies.transmissibility.in_time import measured
+from sealdyn.studies.transmissibility.arrangements import measured, seals_of
 
 R_I, R_O, ROUGH, STRENGTH = 0.025, 0.029, 0.15e-6, 180e6
 P_O, P_I, RATIO, SPRING = 12e5, 1e5, 0.8, 100.0

@@ -9,11 +9,11 @@ import pytest
 from drawn import drawn, has_points, panel, text_trouble
 
 import sealdyn
-from sealdyn.analysis import continuation
+from sealdyn.analysis import poincare_map
 from sealdyn.analysis.poincare_map import SAMPLES, PeriodMap, share_below
+from sealdyn.analysis.rotating_wave import RotatingWave, free_model, least_damped
 from sealdyn.analysis.shooting import Shooter
-from sealdyn.analysis.whirl import RotatingWave, free_model, least_damped
-from sealdyn.analysis.whirl.time_domain import whirl_fate
+from sealdyn.analysis.whirl_in_time import whirl_fate
 from sealdyn.numerics import time_series
 from sealdyn.report.charts import study_rub
 from sealdyn.scenario.errors import ScenarioError
@@ -58,7 +58,7 @@ def test_exponent_of_a_periodic_rub_is_its_floquet_multiplier(reference):
     two trajectories (Adams) grow by."""
     answer, _ = reference
     row = [row for row in answer["rows"] if row["direction"] == "up"][-1]
-    scene = with_values(continuation.frozen_at_end(read("rub").scene), {"rotor.runout": row["value"]})
+    scene = with_values(poincare_map.frozen_at_end(read("rub").scene), {"rotor.runout": row["value"]})
     orbit = Shooter(scene, 1e-6, tight=1e-9).find(np.array(row["end"]), target=1e-6)
     assert row["exponent"] == pytest.approx(math.log(np.abs(orbit.multipliers).max()), abs=row["uncertainty"] + 0.1)
     assert orbit.extremes["h_min"]["value"] == pytest.approx(min(row["h_min"]), abs=2e-9)
@@ -96,10 +96,10 @@ def test_a_key_or_a_unit_that_cannot_be_is_refused(flags, key, tmp_path):
 
 def test_impulse_share_and_film_do_not_depend_on_sampling():
     """Impulse integrated with the motion against samples of the force; located contacts against the sampled film."""
-    scene = continuation.frozen_at_end(read("rub_chaotic").scene)
+    scene = poincare_map.frozen_at_end(read("rub_chaotic").scene)
     scene = with_values(scene, {"rotor.runout": 0.33e-3})
     stroboscope = PeriodMap(scene, 1e-7)
-    x = continuation.ramp_to(scene, "rotor.runout", None, None, {"ramp": 15, "accuracy": 1e-6})
+    x = poincare_map.ramp_to(scene, "rotor.runout", None, None, {"ramp": 15, "accuracy": 1e-6})
     turns = stroboscope.run(x, 24)
     assert turns.impulse == pytest.approx(turns.contact_force.mean() * stroboscope.period, rel=2e-3)
     share = share_below(turns.h_min, 3e-6)
@@ -111,8 +111,8 @@ def test_impulse_share_and_film_do_not_depend_on_sampling():
 
 
 def test_tangents_are_differences_of_the_map():
-    scene = with_values(continuation.frozen_at_end(read("rub_chaotic").scene), {"rotor.runout": 0.33e-3})
-    x = continuation.ramp_to(scene, "rotor.runout", None, None, {"ramp": 15, "accuracy": 1e-6})
+    scene = with_values(poincare_map.frozen_at_end(read("rub_chaotic").scene), {"rotor.runout": 0.33e-3})
+    x = poincare_map.ramp_to(scene, "rotor.runout", None, None, {"ramp": 15, "accuracy": 1e-6})
     stroboscope, q = PeriodMap(scene, 1e-8, "dop853"), np.eye(6)[:, [1, 5]]
     samples = []
     x1, moved = stroboscope.tangents(x, q, samples)
@@ -126,7 +126,7 @@ def test_tangents_are_differences_of_the_map():
 
 def test_whirl_beyond_the_critical_speed_ends_in_contact():
     """Below 5588.7 rad/s it dies; above it grows into the faces, and the reference seal's asperities give way."""
-    scene = continuation.frozen_at_end(read("rub").scene)
+    scene = poincare_map.frozen_at_end(read("rub").scene)
     below, above = whirl_fate(scene, 5400.0), whirl_fate(scene, 6200.0)
     assert below["fate"] == "decays"
     assert below["first_contact"] is None

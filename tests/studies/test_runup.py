@@ -14,8 +14,8 @@ from sealdyn.faces.geometry import COLLAPSE
 from sealdyn.report.charts import study_runup
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import read_scenario
+from sealdyn.studies import runup
 from sealdyn.studies._runner import run_study
-from sealdyn.studies.runup import study as runup
 from sealdyn.studies.runup.speed_ramp import touch_tilt
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"

@@ -11,9 +11,9 @@ from sealdyn.dynamics.model import Model
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import parse_scenario, with_values
 from sealdyn.scene.variants import frozen_at_start
-from sealdyn.studies.stability import study as stability
+from sealdyn.studies import stability
+from sealdyn.studies.stability import Settings
 from sealdyn.studies.stability.grid import Grid, growth_rates
-from sealdyn.studies.stability.study import Settings
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 FMR, FMS, FMSR = (SCENARIOS / f"{n}.toml" for n in ("fmr_reference", "fms_reference", "fmsr_both_flexible"))

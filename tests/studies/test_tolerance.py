@@ -17,10 +17,17 @@ from sealdyn.report.charts import study_tolerance
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.simulation.batch import run_many
+from sealdyn.studies import tolerance as study
 from sealdyn.studies._runner import run_study
-from sealdyn.studies.tolerance import study
-from sealdyn.studies.tolerance.estimates import probability, sobol, sobol_intervals
-from sealdyn.studies.tolerance.scatter import SCRAMBLES, points, read_correlations, read_scatter
+from sealdyn.studies.tolerance.scatter import (
+    SCRAMBLES,
+    points,
+    probability,
+    read_correlations,
+    read_scatter,
+    sobol,
+    sobol_intervals,
+)
 
 PATH = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
 LINEAR = ["run.turns=2", 'run.start="steady"', "film.model=linear", "stator.misalignment=0"]

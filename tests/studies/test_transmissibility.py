@@ -14,8 +14,8 @@ from sealdyn.closed_form import GREEN_1989
 from sealdyn.dynamics.model import Model
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.scene.variants import counterpart, frozen_at_start, with_single_flexible_ring
-from sealdyn.studies.transmissibility import study as transmissibility
-from sealdyn.studies.transmissibility.study import Settings
+from sealdyn.studies import transmissibility
+from sealdyn.studies.transmissibility import Settings
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 

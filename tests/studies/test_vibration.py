@@ -17,9 +17,9 @@ from sealdyn.dynamics.model import Model
 from sealdyn.report.panels import draw
 from sealdyn.scene.scene import SceneError
 from sealdyn.solvers.integrate import solve
-from sealdyn.studies.vibration import shaken_seal, study
+from sealdyn.studies import vibration as study
+from sealdyn.studies.vibration import Settings, shaken_seal
 from sealdyn.studies.vibration.shaken_seal import ShakenSeal
-from sealdyn.studies.vibration.study import Settings
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 G = 9.80665

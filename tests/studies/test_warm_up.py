@@ -9,7 +9,7 @@ import sealdyn
 from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.warm_state import Warming, at_work, warming
 from sealdyn.simulation.heat import heat_cautions
-from sealdyn.studies.wear.study import INFO
+from sealdyn.studies.wear import INFO
 
 RINGS = {
     "stator": {"resistance": 0.3694, "coning_per_watt": 2.5756e-6, "time_constant": 1.169},

@@ -7,7 +7,7 @@ import pytest
 from scenes import fmr, fms, fmsr
 from scipy.integrate import solve_ivp
 
-from sealdyn.analysis.whirl import RotatingWave, branch, contact_tilt_aligned, free_model
+from sealdyn.analysis.rotating_wave import RotatingWave, branch, contact_tilt_aligned, free_model
 from sealdyn.dynamics.stability_thresholds import critical_speed, one_by_one
 
 SEALS = {"fms": fms(), "fmr": fmr(c=3.0), "fmsr": fmsr()}

@@ -16,9 +16,9 @@ from sealdyn.report.charts import study_work_precision as chart
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.scene.film import Coefficients
 from sealdyn.solvers.fixed_step import REFERENCE_METHODS
+from sealdyn.studies import work_precision as study
 from sealdyn.studies._runner import run_study
-from sealdyn.studies.work_precision import errors, film_ladder, study
-from sealdyn.studies.work_precision.study import mark_slow_runs
+from sealdyn.studies.work_precision import film_ladder, mark_slow_runs, observation
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 FEW = {"tolerances": 3, "loosest": 1e-3, "tightest": 1e-7, "repeats": 1, "samples": 40, "longest": 60}
@@ -97,7 +97,7 @@ def test_the_study_reports_what_it_must(reference_seal):
     assert stored["methods"] == json.loads(json.dumps(answer["methods"]))
     figure = drawn(chart, path, path.with_suffix(".png"))
     for where, title in chart.TITLES.items():
-        ax = panel(figure, f"{title}, against wall time")
+        ax = panel(figure, f"{title}, by wall time")
         assert all(words in ax.get_xlabel() + ax.get_ylabel() for words in ("error", "ms"))
         for row in answer["methods"].values():
             assert has_points(ax, row["error"][where], 1e3 * np.array(row["wall"])), where
@@ -121,7 +121,7 @@ def test_models_against_the_radial_film(reference_seal):
 def test_harmonic_balance_is_the_linear_film_in_time():
     ready = study.ready(scenario("fms_reference", 'film.model="linear"', 'run.start="steady"', "run.turns=3"))
     ready.extrema.windows[1] = [ready.duration * 2 / 3, ready.duration]
-    found = errors.observe(ready, REFERENCE_METHODS["expm"], "expm", 1e-9, samples=30)
+    found = observation.observe(ready, REFERENCE_METHODS["expm"], "expm", 1e-9, samples=30)
     balance = film_ladder.harmonic_balance(ready)
     assert balance["relative_misalignment"] == pytest.approx(found.steady["relative_misalignment"], rel=1e-5)
     assert balance["h_min"] == pytest.approx(found.steady["h_min"][0], rel=1e-8)
@@ -165,8 +165,8 @@ def test_judges_agree_where_a_ring_sticks():
     dropped = model.capture_speed * face / exact.scales["leakage"]
     assert max(band.values()) < dropped < 4e-6
     # A judged method, whose steps are its own, agrees as well.
-    found = errors.observe(study.ready(asked), REFERENCE_METHODS["dop853"], "dop853", 1e-12, samples=200)
-    assert max(errors.worst(errors.errors(found, exact)).values()) < dropped
+    found = observation.observe(study.ready(asked), REFERENCE_METHODS["dop853"], "dop853", 1e-12, samples=200)
+    assert max(observation.worst(observation.errors(found, exact)).values()) < dropped
 
 
 def test_a_run_that_takes_too_long_is_stopped(tmp_path):

@@ -12,7 +12,7 @@ from sealdyn.scenario.reader import ScenarioError, parse_scenario, with_values
 from sealdyn.scenario.templates import template
 from sealdyn.scene import variants
 from sealdyn.scene.rings import INERTIAL, MATERIALS, Body, Material
-from sealdyn.studies.stability.study import si_axis
+from sealdyn.studies.stability import si_axis
 
 FMR = (Path(__file__).parents[2] / "scenarios" / "fmr_reference.toml").read_text()
 OWN = 'mass = "1 kg"\ntransverse_inertia = "8e-4 kg*m^2"\npolar_inertia = "16e-4 kg*m^2"\n'

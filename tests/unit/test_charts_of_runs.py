@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from sealdyn.numerics.order_spectrum import located, order_spectrum, peaks
 from sealdyn.report.charts import film, orbit, overview, poincare, sketch, spectrum
-from sealdyn.report.charts.housing_sweep import sweep_lines
+from sealdyn.report.charts.overview import sweep_lines
 from sealdyn.report.charts.page import written
 from sealdyn.report.charts.record import Run
 

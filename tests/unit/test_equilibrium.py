@@ -8,8 +8,8 @@ import pytest
 from oracles import opening_force
 from scenes import CLEARANCE, R_I, R_O, SUPPORT, film, fmr, fms, fmsr, run, started
 
-from sealdyn.analysis.continuation import frozen_at_end
 from sealdyn.analysis.film_matrices import State, matrices, opened
+from sealdyn.analysis.poincare_map import frozen_at_end
 from sealdyn.dynamics.equilibrium import axial_excess, equilibria, settle, support_stiffness
 from sealdyn.dynamics.model import Model
 from sealdyn.faces.geometry import FLOOR

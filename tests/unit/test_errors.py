@@ -4,7 +4,7 @@ import pickle
 
 import pytest
 
-from sealdyn.analysis.continuation import FilmCollapsed
+from sealdyn.analysis.poincare_map import FilmCollapsed
 from sealdyn.dynamics.run_state import FilmClosed
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scene.scene import SceneError

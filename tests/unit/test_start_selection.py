@@ -16,7 +16,8 @@ from sealdyn.simulation import selection
 from sealdyn.simulation.batch import run_many
 from sealdyn.simulation.selection import Start, choose_start
 from sealdyn.simulation.simulate import prepare_run, simulate, simulate_in_memory
-from sealdyn.studies.work_precision import film_ladder, study
+from sealdyn.studies import work_precision as study
+from sealdyn.studies.work_precision import film_ladder
 
 ROOT = Path(__file__).parents[2]
 SEAL = ROOT / "scenarios" / "fms_reference.toml"

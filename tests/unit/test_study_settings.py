@@ -10,12 +10,17 @@ import pytest
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import read_scenario
 from sealdyn.scenario.settings import axis, si_unit, study_settings, values_in_si
-from sealdyn.studies import contact_onset, rub, steady_state, study_names, sweep
-from sealdyn.studies._runner import study_info, study_module
-from sealdyn.studies._settings import help_text, schema_with_studies, settings_of
-from sealdyn.studies.failures import study as failures
-from sealdyn.studies.sealing_number import study as sealing_number
-from sealdyn.studies.work_precision import study as work_precision
+from sealdyn.studies import (
+    contact_onset,
+    failures,
+    rub,
+    sealing_number,
+    steady_state,
+    study_names,
+    sweep,
+    work_precision,
+)
+from sealdyn.studies._runner import help_text, schema_with_studies, settings_of, study_info, study_module
 
 SCENARIO = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
 

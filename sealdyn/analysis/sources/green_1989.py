@@ -24,7 +24,9 @@ from ...solvers.integrate import solve
 TITLE = "Green (1989), J. Tribology 111, Table 1; linear film, Green's coefficients; speeds in rad/s"
 FILM = "linear"
 COVERS = "transmissibilities and critical speeds of FMR and FMS seals"
-HEAD = ("seal", "c", "quantity", "published", "formula", "lin. algebra", "time domain", "deviation", "verdict")
+COLUMNS = {"seal": "arrangement", "c": "inertia_ratio", "quantity": "quantity", "published": "published",
+           "formula": "formula", "lin. algebra": "linear_algebra", "time domain": "time_domain",
+           "deviation": "deviation", "verdict": "verdict"}  # fmt: skip
 
 ACCURACY = 1e-8
 # The three methods must agree to this, relative.
@@ -171,19 +173,6 @@ def _row(entry, methods) -> dict:
     if entry.quantity == "critical_speed":
         return row | {"verdict": "print differs", "remark": SPEED_EXPLAINED}
     return row | {"verdict": "rounding", "remark": MISALIGNMENT_EXPLAINED}
-
-
-def cells(row: dict) -> tuple[str, ...]:
-    """A line of the table."""
-    numbers = [row[k] for k in ("published", "formula", "linear_algebra", "time_domain")]
-    return (
-        row["arrangement"],
-        "-" if row["inertia_ratio"] is None else f"{row['inertia_ratio']:g}",
-        row["quantity"].replace("_", " "),
-        *("none" if v is None else f"{v:.6g}" for v in numbers),
-        "-" if row["deviation"] is None else f"{100 * row['deviation']:+.2f} %",
-        row["verdict"],
-    )
 
 
 def place(row: dict) -> str:

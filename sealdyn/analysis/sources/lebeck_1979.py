@@ -20,7 +20,9 @@ from ...scene.scene import Closing, Scene
 TITLE = "Lebeck, Teale & Pierce (1979), ONR ME-95(79)ONR-414-1, wavy rough seal at balance; reynolds, 24 x 180 a wave"
 FILM = "reynolds"
 COVERS = "load support, friction and leakage of a wavy rough seal at rest"
-HEAD = ("waves", "h_n/c", "quantity", "published", "reynolds", "independent", "deviation", "verdict")
+COLUMNS = {"waves": "order", "h_n/c": "amplitude", "quantity": "quantity", "published": "published",
+           "reynolds": "computed", "independent": "independent", "deviation": "deviation",
+           "verdict": "verdict"}  # fmt: skip
 SOURCE = "Lebeck, Teale & Pierce (1979), Table 3-1"
 # The scene: units of length are the outer radius and the half height of the asperities.
 INNER, OUTER, HALF = 0.045, 0.05, 0.5e-6
@@ -102,20 +104,6 @@ def _row(row, quantity, computed) -> dict:
     return {"source": SOURCE, "order": row.order, "amplitude": row.amplitude, "quantity": quantity,
             "published": published, "computed": float(computed), "independent": independent, "deviation": deviation,
             "roads_apart": apart, "verdict": verdict, "remark": remark}  # fmt: skip
-
-
-def cells(row: dict) -> tuple[str, ...]:
-    """A line of the table."""
-    return (
-        str(row["order"]) if row["amplitude"] else "none",
-        f"{row['amplitude']:.2f}",
-        row["quantity"].replace("_", " "),
-        "-" if row["published"] is None else f"{row['published']:.4g}",
-        f"{row['computed']:.4g}",
-        f"{row['independent']:.3g}",
-        "-" if row["deviation"] is None else f"{100 * row['deviation']:+.2f} %",
-        row["verdict"],
-    )
 
 
 def place(row: dict) -> str:

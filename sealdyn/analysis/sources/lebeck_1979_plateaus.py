@@ -12,7 +12,8 @@ from .lebeck_1979 import BALANCE, INNER, OUTER, SPEED, TOLERANCE, UNEXPLAINED, V
 TITLE = "Lebeck, Teale & Pierce (1979), Table 2-7, wavy seal, Gaussian heights with plateaus; film of 24 x 180 a wave"
 FILM = "reynolds"
 COVERS = "the same with faces worn to plateaus"
-HEAD = ("plateau/sigma_1", "quantity", "published", "computed", "independent", "deviation", "verdict")
+COLUMNS = {"plateau/sigma_1": "truncation", "quantity": "quantity", "published": "published", "computed": "computed",
+           "independent": "independent", "deviation": "deviation", "verdict": "verdict"}  # fmt: skip
 SOURCE = "Lebeck, Teale & Pierce (1979), Table 2-7"
 # Units of length are the outer radius and the composite rms roughness; three waves.
 ROUGHNESS = OUTER / 3e5
@@ -97,19 +98,6 @@ def _row(truncation, quantity, tolerance, numbers, computed) -> dict:
     return {"source": SOURCE, "truncation": truncation, "quantity": quantity, "published": published,
             "computed": float(computed), "independent": independent, "deviation": deviation, "roads_apart": apart,
             "verdict": verdict, "remark": remark}  # fmt: skip
-
-
-def cells(row: dict) -> tuple[str, ...]:
-    """A line of the table."""
-    return (
-        f"{row['truncation']:.2f}",
-        row["quantity"].replace("_", " "),
-        "-" if row["published"] is None else f"{row['published']:.5g}",
-        f"{row['computed']:.4g}",
-        "-" if row["independent"] is None else f"{row['independent']:.5g}",
-        "-" if row["deviation"] is None else f"{100 * row['deviation']:+.2f} %",
-        row["verdict"],
-    )
 
 
 def place(row: dict) -> str:

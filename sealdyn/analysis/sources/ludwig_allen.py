@@ -14,7 +14,9 @@ from .. import quasi_static
 TITLE = "Ludwig & Allen (1976), NASA TN D-8102; radial film, planar, half-Sommerfeld; films in um"
 FILM = "radial"
 COVERS = "film thickness and motion of a ring held by secondary-seal friction (FMR)"
-HEAD = ("F_s/F_d", "quantity", "published", "formula", "static", "time domain", "deviation", "verdict")
+COLUMNS = {"F_s/F_d": "force_ratio", "quantity": "quantity", "published": "published", "formula": "formula",
+           "static": "static", "time domain": "time_domain", "deviation": "deviation",
+           "verdict": "verdict"}  # fmt: skip
 
 SOURCE, CURVE = "Ludwig & Allen (1976), example", "Ludwig & Allen (1976), Fig. 8"
 # The curve of the sealing number, over the force ratios of practice.
@@ -81,17 +83,10 @@ def _row(source, q, quantity, published, values) -> dict:
     return row
 
 
-def cells(row: dict) -> tuple[str, ...]:
-    """A line of the table."""
-    factor = 1.0 if row["quantity"] == "sealing_number" else 1e6
-    numbers = [row[k] for k in ("published", "formula", "static", "time_domain")]
-    return (
-        f"{row['force_ratio']:g}",
-        row["quantity"].replace("_", " "),
-        *("-" if v is None else f"{factor * v:.6g}" for v in numbers),
-        "-" if row["deviation"] is None else f"{100 * row['deviation']:+.2f} %",
-        row["verdict"],
-    )
+def shown(row: dict) -> dict:
+    """A row with its films in um."""
+    films = () if row["quantity"] == "sealing_number" else ("published", "formula", "static", "time_domain")
+    return row | {name: 1e6 * row[name] for name in films if row[name] is not None}
 
 
 def place(row: dict) -> str:

@@ -27,8 +27,9 @@ from ...scene.gas import Gas, GasDam, viscosity_of
 TITLE = "Zuk (1972), NASA TM X-68022, sealing dam at cruise; gas_dam, laminar, width constant (parallel) or zuk"
 FILM = "gas_dam"
 COVERS = "leakage, force, its centre and exit Mach number of a sealing dam"
-HEAD = ("tilt, mrad", "film, mil", "quantity", "published", "gas_dam", "independent", "tilt twice", "deviation",
-        "verdict")  # fmt: skip
+COLUMNS = {"tilt, mrad": "tilt", "film, mil": "mean_film", "quantity": "quantity", "published": "published",
+           "gas_dam": "computed", "independent": "independent", "tilt twice": "tilt_counted_twice",
+           "deviation": "deviation", "verdict": "verdict"}  # fmt: skip
 
 SOURCE = "Zuk (1972), sealing dam at cruise"
 # Relative: the film against the print, and against the independent computation in its four digits.
@@ -150,21 +151,19 @@ def _verdict(row) -> tuple[str, str]:
     return "FAILED", "not the printed number, and no known error of the source"
 
 
-def cells(row: dict) -> tuple[str, ...]:
-    """A line of the table."""
+def shown(row: dict) -> dict:
+    """A row in the units of the source."""
     words, size = UNITS[row["quantity"]]
-    numbers = [row[k] for k in ("published", "computed", "independent", "tilt_counted_twice")]
-    return (
-        f"{1e3 * row['tilt']:+g}" if row["tilt"] else "0",
-        f"{row['mean_film'] / MIL:.1f}",
-        words,
-        *("-" if v is None else f"{v / size:.4g}" for v in numbers),
-        "-" if row["deviation"] is None else f"{100 * row['deviation']:+.2f} %",
-        row["verdict"],
-    )
+    numbers = ("published", "computed", "independent", "tilt_counted_twice")
+    seen = {
+        "quantity": words,
+        "tilt": f"{1e3 * row['tilt']:+g}" if row["tilt"] else "0",
+        "mean_film": row["mean_film"] / MIL,
+    }
+    return row | seen | {name: row[name] / size for name in numbers if row[name] is not None}
 
 
 def place(row: dict) -> str:
     """Which line a remark speaks of."""
-    tilt, film, quantity, *_ = cells(row)
-    return f"{tilt} mrad {film} mil {quantity.split(',')[0]}"
+    seen = shown(row)
+    return f"{seen['tilt']} mrad {seen['mean_film']:.1f} mil {seen['quantity'].split(',')[0]}"

@@ -9,12 +9,11 @@ from ...answers import Axis, Level, Panel, Series
 from ...archive import ArchiveError
 from ..panels import draw_panel
 from ..summary import is_radial
-from . import followers_animation
+from . import followers
 from .film import around, thickness
 from .moving import PER_TURN, check_name, moments, now, round_times, write
 from .orbit import contact_circle
-from .page import absent, annulus, flatten
-from .palette import CONTACT, GREY, MARK, RING, THICKNESS, TILT
+from .page import CONTACT, GREY, MARK, RING, THICKNESS, TILT, absent, annulus, flatten
 from .record import DEG, MM, UM, Run
 
 # Radii of the face in the map, and its colours.
@@ -40,7 +39,7 @@ def animate(archive_path, out_path, turns: float = 4.0, per_turn: int = PER_TURN
     check_name(out_path)
     run = Run(archive_path)
     if is_radial(run.info):
-        return followers_animation.animate(run, out_path, turns, per_turn, progress)
+        return followers.animate(run, out_path, turns, per_turn, progress)
     if run.clearance is None or not run.has("h_min", "axial_gap_change"):
         raise ArchiveError(f"{archive_path}: holds no film thickness over time")
     return write(run, _panels, moments(run, turns, per_turn, out_path), out_path, progress)

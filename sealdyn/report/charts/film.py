@@ -6,8 +6,7 @@ from matplotlib.colors import Normalize
 from matplotlib.ticker import MaxNLocator
 
 from ...archive import FIELD_TIME, field
-from .page import EVEN, absent, annulus, header, look, save, sheet
-from .palette import CONTACT, FILM, PRESSURE, SKY, THICKNESS
+from .page import CONTACT, EVEN, FILM, PRESSURE, SKY, THICKNESS, absent, annulus, header, look, save, sheet
 from .record import BLOCK, DEG, MM, Run
 
 MOST_COLUMNS, STEPS = 1500, 20

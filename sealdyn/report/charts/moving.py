@@ -7,8 +7,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from .page import header, look, sheet
-from .palette import MARK
+from .page import MARK, header, look, sheet
 from .record import MILLISECONDS, Run
 
 # Pictures of a turn by default, and of a second; pictures at most; inches of a picture and dots of an inch.

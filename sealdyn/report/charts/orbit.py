@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from .page import absent, look, once, run_page, save, written
-from .palette import CONTACT, GREY, MARK, RING, TILT
+from .page import CONTACT, GREY, MARK, RING, TILT, absent, look, once, run_page, save, written
 from .record import BLOCK, Run
 
 DIRECTIONS = 72

@@ -1,8 +1,13 @@
-"""The page of a chart: heading, panels in the house's look, what panels have in common, and a file at the end."""
+"""The page of a chart: heading, panels in the house's look, what panels have in common, and a file at the end; and
+colours that colour-blind readers tell apart.
+
+**Source** Okabe and Ito (2008), Color Universal Design; the map for film thickness is cividis
+(Nunez, Anderton and Renslow, 2018), that for pressure viridis (van der Walt and Smith, 2015).
+"""
 
 import os
 from pathlib import Path
-from textwrap import shorten, wrap
+from textwrap import wrap
 
 import numpy as np
 from matplotlib import rc_context
@@ -14,7 +19,41 @@ from PIL import Image
 from ...quantities import printed
 from ...status import Status
 from ..text import question_of
-from .palette import BLACK, GREY, PALE, STATUS
+
+BLACK = "#000000"
+ORANGE = "#E69F00"
+SKY = "#56B4E9"
+GREEN = "#009E73"
+YELLOW = "#F0E442"
+BLUE = "#0072B2"
+VERMILLION = "#D55E00"
+PURPLE = "#CC79A7"
+GREY = "#8A8A8A"
+PALE = "#D9D9D9"
+
+THICKNESS, PRESSURE = "cividis", "viridis"
+
+# One meaning, one colour, in every chart.
+FILM, TILT, LEAK, CONTACT, THEORY, MARK = BLUE, GREEN, SKY, VERMILLION, ORANGE, BLACK
+RING = {"stator": PURPLE, "rotor": BLUE}
+STATUS = {Status.OK: GREEN, Status.INACCURATE: ORANGE, Status.COLLAPSED: VERMILLION, Status.FAILED: VERMILLION,
+          Status.INTERRUPTED: ORANGE, Status.RUNNING: BLUE}  # fmt: skip
+
+# Colours of lines that have no meaning of their own, in order.
+CYCLE = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, BLACK)
+CYCLED = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh")
+
+# Words of a style: colours by their meaning, dashes, marks.
+COLOURS = {
+    "film": FILM, "tilt": TILT, "leakage": LEAK, "contact": CONTACT, "theory": THEORY, **RING, **STATUS,
+    "stable": GREEN, "unstable": VERMILLION, "neutral": ORANGE, "good": GREEN, "bad": VERMILLION, "warn": ORANGE,
+    "black": BLACK, "grey": GREY, "pale": PALE, "blue": BLUE, "yellow": YELLOW,
+}  # fmt: skip
+COLOURS |= dict(zip(CYCLED, CYCLE, strict=True))
+DASHES = {"dashed": (0, (5, 2)), "dotted": (0, (1, 1.5)), "dashdot": (0, (5, 2, 1, 2))}
+MARKS = {"circle": "o", "square": "s", "diamond": "D", "triangle": "^", "down": "v", "cross": "x", "plus": "+",
+         "star": "*", "tick": "_", "point": "."}  # fmt: skip
+
 
 LOOK = {
     "font.size": 8.5, "text.hinting": "none", "lines.linewidth": 1.0, "legend.frameon": False, "legend.fontsize": 8,
@@ -52,16 +91,9 @@ def run_page(run, width: float, height: float, mosaic, **layout):
     return figure, panels(figure, header(figure, run), mosaic, **layout)
 
 
-def study_page(study, width: float, height: float, mosaic, title: str = "", below: str = "", bold: str = "", **layout):
-    """Figure (inches) and axes by name for a study: `mosaic` and `layout` as of matplotlib's subplot_mosaic.  The title
-    is by default the scenario's question; below it stand `below`, by default name and question, and in bold letters, of
-    a failed study in its colour, `bold`."""
-    figure = sheet(width, height)
-    return figure, panels(figure, heading(figure, *study_words(study, title, below, bold)), mosaic, **layout)
-
-
 def study_words(study, title: str = "", below: str = "", bold: str = "") -> tuple[str, str, str, str]:
-    """Title, lines below, bold ones and their colour, as `study_page` has them."""
+    """Title, lines below, bold ones and their colour, the title by default the scenario's question, the lines
+    below by default name and question."""
     asked, status = question_of(study["question"]), study["answer"].get("status", Status.OK)
     title = title or asked or study["name"]
     below = below or (f"{study['name']}: {asked}" if asked and asked != title else study["name"])
@@ -126,11 +158,6 @@ def heading(figure, title: str, below: str, bold: str = "", colour: str = BLACK)
 def _lines(words: str, length: int) -> list[str]:
     """Lines of at most `length` characters; a text without end is cut."""
     return [line for part in words.split("\n") for line in wrap(part, length, max_lines=MOST_LINES, placeholder=" …")]
-
-
-def shortened(words: str, length: int) -> str:
-    """`words` in one line of at most `length` characters."""
-    return shorten(words, length, placeholder=" …")
 
 
 def save(figure, path) -> Path | Figure:

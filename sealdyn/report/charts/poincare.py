@@ -4,8 +4,7 @@ import numpy as np
 from matplotlib.ticker import MaxNLocator
 
 from ...numerics.order_spectrum import cubic
-from .page import EVEN, absent, look, run_page, save
-from .palette import FILM, THICKNESS, TILT
+from .page import EVEN, FILM, THICKNESS, TILT, absent, look, run_page, save
 from .record import Run
 
 MOST = 4000  # crossings drawn, the last ones

@@ -4,8 +4,7 @@ import numpy as np
 from matplotlib.patches import Polygon, Rectangle
 
 from ...quantities import in_words, printed, shown_in
-from .page import PAPER, look, save, sheet, written
-from .palette import BLACK, CONTACT, GREY, PALE, RING, SKY
+from .page import BLACK, CONTACT, GREY, PALE, PAPER, RING, SKY, look, save, sheet, written
 from .record import MM, Run
 
 # Along the shaft, in widths of the face: length of a ring, clearance, cone, room for a support, and the part of a ring

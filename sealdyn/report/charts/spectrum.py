@@ -5,8 +5,7 @@ from matplotlib.ticker import NullLocator
 
 from ...numerics.order_spectrum import FOLDED, at_the_edge, located, order_spectrum, peaks
 from ...quantities import in_words
-from .page import absent, decades, look, number, run_page, save, written
-from .palette import CONTACT, FILM, LEAK, TILT
+from .page import CONTACT, FILM, LEAK, TILT, absent, decades, look, number, run_page, save, written
 from .record import Run
 
 MOST_ROWS = 1 << 14

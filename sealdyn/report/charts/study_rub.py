@@ -8,14 +8,12 @@ from ...archive import read_study
 from ...quantities import in_words
 from ...status import Status
 from ..panels import study_sheet
-from .page import save
-from .palette import CYCLED
+from .page import CYCLED, save
 from .poincare import around
 
-# Names of keys on the axis, and their SI units.
+# Names of keys on the axis.
 NAMES = {"rotor.runout": "runout of the rotor", "stator.misalignment": "misalignment of the stator",
          "rotor.misalignment": "misalignment of the rotor", "shaft.speed": "shaft speed"}  # fmt: skip
-UNITS = {**dict.fromkeys(NAMES, "rad"), "shaft.speed": "rad/s"}
 CLASSES = {"chaotic": "second", "quasi-periodic": "fourth", "no contact": "grey", "settling": "sixth",
            "undecided": "fifth"}  # fmt: skip
 DIRECTION = {"up": ("first", "growing"), "down": ("fifth", "falling")}
@@ -44,10 +42,8 @@ def draw(archive_path, out_path):
 
 def _key(answer) -> Axis:
     """The key along an axis."""
-    key = answer["key"]
-    # Archives of earlier versions do not hold its unit; what has none of its own is a pure number.
-    unit = (answer.get("units") or {}).get("rows/value", UNITS.get(key, ""))
-    return Axis("1" if unit in ("", "SI") else unit, NAMES.get(key, key))
+    key, unit = answer["key"], answer["units"]["rows/value"]
+    return Axis("1" if unit == "SI" else unit, NAMES.get(key, key))
 
 
 def _style(row) -> str:

@@ -7,8 +7,7 @@ from ...archive import read_study
 from ...quantities import everyday, in_words, quantity, reading_in
 from ..panels import study_sheet
 from ..text import written_units
-from .page import save
-from .palette import CYCLED
+from .page import CYCLED, save
 from .record import done
 
 # Of an extreme of a trip: the series it is of, its name, quantity, which extreme it is.

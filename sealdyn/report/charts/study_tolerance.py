@@ -6,8 +6,7 @@ from ...answers import Axis, Level, Panel, Series
 from ...archive import read_study
 from ...quantities import printed, shown_in
 from ..panels import study_sheet
-from .page import EVEN, number, power, save
-from .palette import CYCLED
+from .page import CYCLED, EVEN, number, power, save
 
 # Outputs that have a histogram, and keys that have a row.
 MOST, MOST_KEYS = 4, 10

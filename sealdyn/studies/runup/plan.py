@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
-from ...analysis.continuation import frozen_at_end
-from ...analysis.whirl import free_model
+from ...analysis.poincare_map import frozen_at_end
+from ...analysis.rotating_wave import free_model
 from ...dynamics.modes import verdict
 from ...numerics.piecewise_linear import PiecewiseLinear
 from ...scenario.errors import ScenarioError
@@ -14,6 +14,7 @@ from ...scenario.settings import si_unit, values_in_si
 from ...scene import variants
 from ...scene.variants import part
 from ...simulation.stability import critical_speed, resonance_speeds
+from .ramp_run import tables_end
 from .speed_ramp import Steady, followed_mode, touch_tilt
 
 SPEED = "shaft.speed"
@@ -199,13 +200,6 @@ def _own_rates(begin, end, foretold, few) -> list[float]:
     # At least a few windows of whole turns on the way, and no more turns than anyone waits for.
     most, least = _turns(begin, end, 1.0) / 30, _turns(begin, end, 1.0) / 4000
     return [float(f"{np.clip(rate, least, most):.4g}") for rate in rates]
-
-
-def tables_end(scene) -> float:
-    """When (s) the scene's own tables have ended: then the ramp begins."""
-    tables = [v for owner in (scene.shaft, scene.film, scene.rotor, scene.stator, scene.closing)
-              for v in vars(owner).values() if isinstance(v, PiecewiseLinear)]  # fmt: skip
-    return max((table.time[-1] for table in tables), default=0.0)
 
 
 def _tones(scene, tilting, order, begin, end) -> list[str]:

@@ -6,9 +6,8 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
-from ...analysis.continuation import frozen_at_end
-from ...analysis.whirl import free_model
-from ...analysis.whirl.mode_over_speed import tilt_mode
+from ...analysis.poincare_map import frozen_at_end
+from ...analysis.rotating_wave import free_model, tilt_mode
 from ...dynamics.model import Model
 from ...dynamics.run_state import Concern
 from ...faces.geometry import COLLAPSE, TOUCH, smallest_gap

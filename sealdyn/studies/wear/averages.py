@@ -12,7 +12,7 @@ from itertools import product
 
 import numpy as np
 
-from ...analysis.continuation import FilmCollapsed, frozen_at_end, ramp_to
+from ...analysis.poincare_map import FilmCollapsed, frozen_at_end, ramp_to
 from ...dynamics import equations
 from ...dynamics.equilibrium import axial_excess, crossing, support_stiffness
 from ...dynamics.model import Model

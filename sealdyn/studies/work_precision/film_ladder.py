@@ -16,7 +16,7 @@ from ...solvers.collocation import collocation
 from ...solvers.contract import tolerance_for
 from ...solvers.methods import METHODS
 from ...status import Status
-from .errors import errors, observe, worst
+from .observation import errors, observe, worst
 
 JUDGE, TIGHT = 1e-11, 1e-11
 # Points over a period at which the harmonic balance is looked at.

@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 from sksundae.cvode import CVODE
 
+from ....analysis.rotating_wave import RotatingWave, contact_tilt_aligned, free_model, least_damped
 from ....analysis.sources.green_1989 import reference_scene
-from ....analysis.whirl import RotatingWave, contact_tilt_aligned, free_model, least_damped
 from ....dynamics.modes import verdict
 from ....dynamics.run_state import RunState
 from ....dynamics.signals import signals

@@ -5,14 +5,14 @@ import math
 
 import numpy as np
 
-from ...dynamics.model import Model
-from ...dynamics.run_state import RunState
-from ...scene.scene import Scene
-from ...simulation.selection import choose_method
-from ...solvers.contract import Enough, Recorder, attainable
-from ...solvers.integrate import solve
-from ...status import Status
-from ..poincare_map import PIECE, PeriodMap
+from ..dynamics.model import Model
+from ..dynamics.run_state import RunState
+from ..scene.scene import Scene
+from ..simulation.selection import choose_method
+from ..solvers.contract import Enough, Recorder, attainable
+from ..solvers.integrate import solve
+from ..status import Status
+from .poincare_map import PIECE, PeriodMap
 from .rotating_wave import RotatingWave, contact_tilt_aligned, free_model, least_damped
 
 # Amplitude of a small disturbance over the tilt of contact: its square is lost in the growth rate.
