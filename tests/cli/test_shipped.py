@@ -9,7 +9,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from command import SCENARIOS, finished, sealdyn, started
+from command import SCENARIOS, sealdyn
 
 import sealdyn as package
 from sealdyn import ScenarioError, example, examples, read_scenario

@@ -22,7 +22,7 @@ SMALL = {
     "contact-onset": ("fms_reference", {"stator.misalignment": 0},
                       {"margin": 0.6, "over": "film.coning", "values": "2 mrad"}),
     "critical-speed": ("fms_reference", {}, {"turns": 20, "speeds": 1}),
-    "elastic-ring": ("lebeck_elastic", {"film.reynolds.cells_r": 5, "film.reynolds.cells_theta": 72}, {}),
+    "elastic-ring": ("lebeck_elastic", {"film.reynolds.cells_r": 6, "film.reynolds.cells_theta": 108}, {}),
     "equilibrium": ("run_in", {}, {"points": 21}),
     "failures": ("fms_reference", {}, {"items": 3}),
     "followability": ("circumferential_reference", {}, {"runs": 1, "speed": "9000,12000 rpm"}),
