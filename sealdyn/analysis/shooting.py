@@ -24,7 +24,7 @@ from ..simulation.selection import choose_method
 from ..solvers.contract import Counts, Recorder, SolverFailure, Status
 from ..solvers.integrate import solve
 from ..solvers.methods import METHODS
-from .whirl.rotating_wave import SPEED_AT, STEP, RotatingWave
+from .rotating_wave import SPEED_AT, STEP, RotatingWave
 
 # Right-hand sides that the path of orbits may take: three times what the dearest scenario needs.
 MOST_WORK = 1_200_000

@@ -6,7 +6,7 @@ What is attacked and how stands in attack/, a file for each.  Anything but an an
 errors in one line came through: a traceback, a warning of Python, a signal, a line too long to read, ten seconds
 without a word, a number that is none, a row lost.  The whole takes some two hours with two jobs and goes on where it
 was stopped: what is done stands in a journal, which the gallery shows, with the commit that was attacked; --quick makes
-some 500 draws in a minute or two.
+some 200 draws in a minute.
 """
 
 import argparse
@@ -39,7 +39,7 @@ from sealdyn.numerics.interruption import VARIABLES
 JOURNAL = Path(__file__).parents[2] / "outputs" / "gallery" / "robustness.jsonl"
 # Each with its cases: all, a quick sample; and how many make a batch.
 PARTS = {
-    "scenarios": (scenarios, 20_000, 420, 1000),
+    "scenarios": (scenarios, 20_000, 120, 1000),
     "motions": (motions, 2000, 40, 250),
     "runs": (runs, 2000, 10, 100),
     "archives": (archives, 1000, 10, 25),
@@ -47,7 +47,7 @@ PARTS = {
     "kills": (kills, 100, 1, 5),
     "continues": (continues, len(CASES), 2, 6),
     "study_kills": (study_kills, 400, 2, 20),
-    "worlds": (worlds, len(WORLDS), 4, 4),
+    "worlds": (worlds, len(WORLDS), 2, 4),
     "disks": (disks, 100, 3, 10),
     "soak": (soak, 30, 0, 30),
 }

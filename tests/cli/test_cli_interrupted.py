@@ -17,9 +17,7 @@ from killed import mark_first
 from sealdyn.archive import ArchiveError, column, field, partial_path, read_info
 
 # Both rings' forcing, no sample beyond need: seconds of solving.
-LONG = settings({"run.turns": 15000, "run.samples_per_turn": 8})
-# Three times what is enough for being killed eight times on the way: a faster machine is done before.
-LONGEST = settings({"run.turns": 45000, "run.samples_per_turn": 4})
+LONG = settings({"run.turns": 9000, "run.samples_per_turn": 8})
 SCALES = {"rotor_z": 1e-5, "rotor_tilt_x": 1e-5 / 0.04, "rotor_tilt_y": 1e-5 / 0.04, "h_min": 1e-5, "time": 1.0}
 PRESSURE = 5e5
 
@@ -88,7 +86,7 @@ def test_interrupt_ends_cleanly(interrupted):
     assert "--continue" in answer.err and "Traceback" not in answer.err
     info = read_info(interrupted["folder"] / answer.found["archive"])
     assert info["status"] == "interrupted"
-    assert 300 < info["rows"] < 120001
+    assert 300 < info["rows"] < 72001
     assert info["summary"]["end"]["time"] < info["summary"]["end"]["asked"]
 
 
@@ -138,8 +136,9 @@ def points_in(journal) -> int:
     return len(journal.read_text().splitlines()) - 1 if journal.exists() else 0
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize("name", STUDIES)
+@pytest.mark.parametrize(
+    "name, number", [*((name, signal.SIGTERM) for name in STUDIES), ("sweep", signal.SIGINT)], ids=str
+)
 def test_a_study_ends_soon_and_says_what_is_kept(tmp_path, name, number):
     journal = tmp_path / "x.partial.jsonl"
     process = started("study", *STUDIES[name], "--out", "x.h5", "--json", cwd=tmp_path)
@@ -209,7 +208,7 @@ def test_who_only_uses_the_package_keeps_his_signals():
 
 def test_an_interruption_at_any_moment_of_loading(tmp_path):
     """Half-loaded libraries keep quiet, and the exit code is ours (moments in s; a check takes about one)."""
-    for moment in (0.0, 0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.5, 0.6):
+    for moment in (0.0, 0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.6):
         process = started("check", REFERENCE, "--json", cwd=tmp_path)
         until(lambda process=process: hears(process), process)
         time.sleep(moment)
@@ -259,7 +258,7 @@ def test_a_run_is_interrupted_while_it_is_done_once_more(tmp_path):
     words = [
         "run",
         SCENARIOS / "massless_ring.toml",
-        *settings({"run.turns": 20000, "run.samples_per_turn": 16}),
+        *settings({"run.turns": 8000, "run.samples_per_turn": 16}),
         "--no-plot",
         "--json",
     ]
@@ -282,16 +281,17 @@ def test_a_run_is_interrupted_while_it_is_done_once_more(tmp_path):
 
 
 @pytest.mark.slow
-def test_killed_at_random_instants(tmp_path):
-    """One run killed eight times, each time continued; the archive is readable after every kill."""
+def test_killed_at_random_instants(tmp_path, unbroken):
+    """One run killed four times, each time continued; the archive is readable after every kill.  More kills, of ten
+    scenes: tests/benchmark/attack/continues.py."""
     archive, chance = tmp_path / "outputs" / "fmr_reference.h5", random.Random(1989)
     reached = [0]
-    for kill in range(8):
-        process = started("run", REFERENCE, *LONGEST, "--no-plot", *["--continue"] * (reached[-1] > 0), cwd=tmp_path)
-        # A quarter of them while the program starts or takes over, the others while it writes.
-        if kill % 4:
-            until(lambda: rows(archive) > reached[-1], process)
-        time.sleep(chance.uniform(0.0, 0.4 if kill % 4 else 2.0))
+    for kill in range(4):
+        process = started("run", REFERENCE, *LONG, "--no-plot", *["--continue"] * (reached[-1] > 0), cwd=tmp_path)
+        # One of them while the program takes over, the others while it writes.
+        if kill != 2:
+            until(lambda: rows(partial_path(archive)) > reached[-1], process)
+        time.sleep(chance.uniform(0.0, 1.0 if kill == 2 else 0.1))
         assert process.poll() is None, f"done before kill {kill}: {process.communicate()}"
         process.kill()
         process.communicate()
@@ -305,11 +305,9 @@ def test_killed_at_random_instants(tmp_path):
                 assert len(values) == shown["rows"] and (values == values).all()
             at, pressures = (field(partial_path(archive), name) for name in ("field_time", "pressure"))
             assert at[-1] <= values[-1] and (pressures == pressures).all()
-    assert reached == sorted(reached) and len(set(reached)) > 4
-    assert finished(started("run", REFERENCE, *LONGEST, "--no-plot", "--continue", cwd=tmp_path)).code == 0
-    whole = tmp_path / "whole.h5"
-    assert finished(started("run", REFERENCE, *LONGEST, "--no-plot", "--out", whole, cwd=tmp_path)).code == 0
-    agree(archive, whole)
+    assert reached == sorted(reached) and len(set(reached)) > 3
+    assert sealdyn("run", REFERENCE, *LONG, "--no-plot", "--continue", cwd=tmp_path).code == 0
+    agree(archive, unbroken)
 
 
 def test_a_signal_before_the_first_thing_is_done_says_so():

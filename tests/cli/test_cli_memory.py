@@ -23,7 +23,7 @@ except SystemExit as end:
 
 def resident(turns: int, folder) -> float:
     """Largest resident memory (MB) of a run of so many turns."""
-    asked = settings({"run.turns": turns, "run.samples_per_turn": 4})
+    asked = settings({"run.turns": turns, "run.samples_per_turn": 8})
     line = [sys.executable, "-c", ASKED, "sealdyn", "run", str(REFERENCE), *asked, "--no-plot", "--json"]
     done = subprocess.run(line, cwd=folder, capture_output=True, text=True, check=True)
     code, kilobytes = done.stderr.split()[-2:]
@@ -34,6 +34,6 @@ def resident(turns: int, folder) -> float:
 @pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="reads the process status of Linux")
 def test_memory_does_not_grow_with_the_run(tmp_path):
-    short, long = resident(2000, tmp_path), resident(20000, tmp_path)
+    short, long = resident(1000, tmp_path), resident(10000, tmp_path)
     assert long < short + 15
     assert long < 400

@@ -23,24 +23,21 @@ CONTRACT = {
     "film": {"axial_stiffness", "tilt_stiffness"}, "closing": {"force", "balance_ratio"}, "closed_form": set(),
     "stability": {"verdict", "whirl_ratio", "critical_speed", "resonance_speeds"}, "counts": {"rhs", "steps"},
 }  # fmt: skip
-PLAIN = {
-    "status",
-    "message",
-    "contact_margin",
-    "contact_margin_limit",
-    "energy_residual",
-    "wall_time",
-    "archive",
-    "figure",
-}
+PLAIN = {"status", "message", "contact_margin", "contact_margin_limit", "energy_residual", "wall_time", "archive",
+         "figure"}  # fmt: skip
 TILT_SCALE = 1e-5 / 0.04
 
 
 @pytest.fixture(scope="module", params=SHIPPED, ids=lambda path: path.stem)
 def run(request, tmp_path_factory):
-    """One shipped scenario, run once: its folder and what the command left."""
+    """One shipped scenario, run once: its folder, what the command left, and its archive as a stranger opens it, with
+    xarray alone."""
+    import xarray
+
     folder = tmp_path_factory.mktemp(request.param.stem)
-    return folder, sealdyn("run", request.param, *short(request.param), "--json", cwd=folder)
+    answer = sealdyn("run", request.param, *short(request.param), "--json", cwd=folder)
+    with xarray.open_dataset(folder / answer.found["archive"], engine="h5netcdf") as data:
+        return folder, answer, data.load()
 
 
 def scene(data):
@@ -59,7 +56,7 @@ def ending(answer):
 
 
 def test_run_answers_with_the_whole_contract(run):
-    folder, answer = run
+    folder, answer, _ = run
     found = answer.found
     assert (found["status"], answer.code) == ending(answer), answer.err
     assert found.keys() >= CONTRACT.keys() | PLAIN
@@ -73,7 +70,7 @@ def test_run_answers_with_the_whole_contract(run):
 
 
 def test_run_leaves_archive_and_figure_and_nothing_else(run):
-    folder, answer = run
+    folder, answer, _ = run
     assert sorted(path.name for path in folder.iterdir()) == ["outputs"]
     stem = answer.found["archive"].removeprefix("outputs/").removesuffix(".h5")
     assert sorted(path.name for path in (folder / "outputs").iterdir()) == [f"{stem}.h5", f"{stem}.png"]
@@ -87,72 +84,67 @@ def is_mean(value, series, slack=0.0) -> bool:
 
 
 def test_numbers_of_the_summary_are_those_of_the_archive(run):
-    folder, answer = run
+    _, answer, data = run
     found = answer.found
     # An extremum between samples is at least as extreme as the samples, but for what is not worth locating.
     slack = 0.02 * found["accuracy"]
-    with open_archive(folder / found["archive"]) as data:
-        low, tilt = found["h_min"], found["relative_misalignment"]
-        film, touching = scene(data)["film"], scene(data)["contact"]
-        clearance = film["clearance"] or 1e-5
-        assert low["value"] <= float(data.h_min.min()) + slack * clearance
-        # Rough faces that touch come closer than their mean planes.
-        assert low["value"] > (-3 * touching["roughness"] if touching else 0.0)
-        assert touching or low["value"] > 0.95 * float(data.h_min.min())
-        assert 0 <= low["time"] <= found["end"]["time"] == pytest.approx(float(data.time[-1]), rel=2e-3)
-        assert low["radius"] in (film["inner_radius"], film["outer_radius"]) and -math.pi <= low["theta"] <= math.pi
-        assert tilt["max"] >= float(data.relative_misalignment.max()) - slack * TILT_SCALE
-        assert tilt["min"] <= float(data.relative_misalignment.min()) + slack * TILT_SCALE
-        assert is_mean(tilt["mean"], data.relative_misalignment, 5 * found["accuracy"] * TILT_SCALE)
-        # Where it leaves the film, which a film that stores tells from where it enters.
-        outwards = initial(film["inner_pressure"]) > initial(film["outer_pressure"])
-        leaving = data.leakage_outer if outwards else data.leakage_inner
-        assert is_mean(found["leakage"]["mean"], leaving) and is_mean(found["friction"]["power"], data.friction_power)
-        np.testing.assert_array_less(0, np.diff(data.time))
-        assert all(np.isfinite(series).all() for series in data.values())
+    low, tilt = found["h_min"], found["relative_misalignment"]
+    film, touching = scene(data)["film"], scene(data)["contact"]
+    clearance = film["clearance"] or 1e-5
+    assert low["value"] <= float(data.h_min.min()) + slack * clearance
+    # Rough faces that touch come closer than their mean planes.
+    assert low["value"] > (-3 * touching["roughness"] if touching else 0.0)
+    assert touching or low["value"] > 0.95 * float(data.h_min.min())
+    assert 0 <= low["time"] <= found["end"]["time"] == pytest.approx(float(data.time[-1]), rel=2e-3)
+    assert low["radius"] in (film["inner_radius"], film["outer_radius"]) and -math.pi <= low["theta"] <= math.pi
+    assert tilt["max"] >= float(data.relative_misalignment.max()) - slack * TILT_SCALE
+    assert tilt["min"] <= float(data.relative_misalignment.min()) + slack * TILT_SCALE
+    assert is_mean(tilt["mean"], data.relative_misalignment, 5 * found["accuracy"] * TILT_SCALE)
+    # Where it leaves the film, which a film that stores tells from where it enters.
+    outwards = initial(film["inner_pressure"]) > initial(film["outer_pressure"])
+    leaving = data.leakage_outer if outwards else data.leakage_inner
+    assert is_mean(found["leakage"]["mean"], leaving) and is_mean(found["friction"]["power"], data.friction_power)
+    np.testing.assert_array_less(0, np.diff(data.time))
+    assert all(np.isfinite(series).all() for series in data.values())
 
 
 def test_leakage_and_friction_are_those_of_the_annulus(run):
     """Thin film between narrow faces: flow h^3 dp over viscous resistance, shear viscosity r w / h."""
-    folder, answer = run
+    _, answer, data = run
     found = answer.found
-    with open_archive(folder / found["archive"]) as data:
-        if data.axial_gap_change[0] != 0:
-            pytest.skip("starts in motion, away from the design clearance")
-        film = scene(data)["film"]
-        if film["clearance"] is None or film["geometry"] == "planar" or film["pads"]:
-            pytest.skip("clearance found, a strip for a ring, or pads in it")
-        if film["outer_radius"] * float(data.relative_misalignment[0]) > 0.2 * film["clearance"]:
-            pytest.skip("starts tilted")
-        r = np.linspace(film["inner_radius"], film["outer_radius"], 20001)
-        middle, dr = 0.5 * (r[1:] + r[:-1]), r[1] - r[0]
-        coning = float(data.coning[0]) if "coning" in data else film["coning"]
-        h = film["clearance"] + coning * (middle - r[0])
-        pressure = initial(film["outer_pressure"]) - initial(film["inner_pressure"])
-        viscosity = film["viscosity"]
-        if film["gas"] is not None:
-            # Of air, U.S. Standard Atmosphere (1976).
-            temperature = initial(film["temperature"])
-            viscosity = 1.458e-6 * temperature**1.5 / (temperature + 110.4)
-        flow = math.pi * pressure / (6 * initial(viscosity)) / np.sum(dr / (middle * h**3))
-        torque = 2 * math.pi * viscosity * float(data.shaft_speed[0]) * np.sum(middle**3 * dr / h)
-        if found["model"]["film"] == "radial" and not data.cavitated_fraction.any():
-            assert float(data.leakage_inner[0]) == pytest.approx(flow, rel=0.02)
-        assert float(data.friction_torque[0]) == pytest.approx(torque, rel=0.06)
+    if data.axial_gap_change[0] != 0:
+        pytest.skip("starts in motion, away from the design clearance")
+    film = scene(data)["film"]
+    if film["clearance"] is None or film["geometry"] == "planar" or film["pads"]:
+        pytest.skip("clearance found, a strip for a ring, or pads in it")
+    if film["outer_radius"] * float(data.relative_misalignment[0]) > 0.2 * film["clearance"]:
+        pytest.skip("starts tilted")
+    r = np.linspace(film["inner_radius"], film["outer_radius"], 20001)
+    middle, dr = 0.5 * (r[1:] + r[:-1]), r[1] - r[0]
+    coning = float(data.coning[0]) if "coning" in data else film["coning"]
+    h = film["clearance"] + coning * (middle - r[0])
+    pressure = initial(film["outer_pressure"]) - initial(film["inner_pressure"])
+    viscosity = film["viscosity"]
+    if film["gas"] is not None:
+        # Of air, U.S. Standard Atmosphere (1976).
+        temperature = initial(film["temperature"])
+        viscosity = 1.458e-6 * temperature**1.5 / (temperature + 110.4)
+    flow = math.pi * pressure / (6 * initial(viscosity)) / np.sum(dr / (middle * h**3))
+    torque = 2 * math.pi * viscosity * float(data.shaft_speed[0]) * np.sum(middle**3 * dr / h)
+    if found["model"]["film"] == "radial" and not data.cavitated_fraction.any():
+        assert float(data.leakage_inner[0]) == pytest.approx(flow, rel=0.02)
+    assert float(data.friction_torque[0]) == pytest.approx(torque, rel=0.06)
     assert found["leakage"]["mean_ml_per_h"] == pytest.approx(found["leakage"]["mean"] * 1e6 * 3600)
 
 
 def test_archive_opens_for_a_stranger(run):
     """xarray alone, without this package."""
-    import xarray
-
-    folder, answer = run
-    with xarray.open_dataset(folder / answer.found["archive"], engine="h5netcdf") as data:
-        assert data.h_min.dims == ("time",)
-        wanted = {"units", "long_name", "display_unit", "display_factor"}
-        assert all(wanted <= series.attrs.keys() for series in data.values())
-        assert (data.h_min.attrs["display_unit"], data.h_min.attrs["display_factor"]) == ("µm", 1e6)
-        assert data.attrs["status"] == ending(answer)[0] and "[film]" in data.attrs["scenario"]
+    _, answer, data = run
+    assert data.h_min.dims == ("time",)
+    wanted = {"units", "long_name", "display_unit", "display_factor"}
+    assert all(wanted <= series.attrs.keys() for series in data.values())
+    assert (data.h_min.attrs["display_unit"], data.h_min.attrs["display_factor"]) == ("µm", 1e6)
+    assert data.attrs["status"] == ending(answer)[0] and "[film]" in data.attrs["scenario"]
 
 
 @pytest.mark.core

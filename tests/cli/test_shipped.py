@@ -9,7 +9,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from command import SCENARIOS, finished, sealdyn, started
+from command import SCENARIOS, sealdyn
 
 import sealdyn as package
 from sealdyn import ScenarioError, example, examples, read_scenario
@@ -103,7 +103,7 @@ def test_its_commands_work_one_after_the_other(tmp_path):
     """As typed, in an empty folder."""
     for line, _ in FIRST_STEPS:
         _, *words = line.split()
-        answer = finished(started(*words, cwd=tmp_path))
+        answer = sealdyn(*words, cwd=tmp_path)
         assert answer.code == 0, (line, answer.err)
     made = {str(path.relative_to(tmp_path)) for path in tmp_path.rglob("*.*") if path.is_file()}
     of_study = {f"outputs/fms-stability.{kind}" for kind in ("h5", "png")}

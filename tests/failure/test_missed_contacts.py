@@ -55,7 +55,7 @@ def test_an_imposed_dip_is_seen_every_turn(method, accuracy, degrees):
 
 
 @pytest.mark.parametrize("method", ["adams", "bdf", "ida", "dop853", "radau"])
-@pytest.mark.parametrize("accuracy", [1e-3, 1e-5, 1e-7])
+@pytest.mark.parametrize("accuracy", [1e-3, 1e-7])
 @pytest.mark.parametrize("errors", [3.0, 0.3, -0.3, -3.0])
 def test_a_dip_of_states_is_seen_down_to_the_certified_error(method, accuracy, errors):
     """A free undamped stator bounces: each period its gap sinks below touch by so many times the certified error.  A

@@ -126,7 +126,7 @@ def test_pressures_of_a_film_with_unknowns_are_kept_as_they_are(tmp_path, cells)
 
 @pytest.mark.slow
 def test_a_film_with_unknowns_goes_on_from_its_archive(tmp_path, cells):
-    scenario = read_scenario(SCENARIOS / "fms_reference.toml", ["run.turns=30", "run.samples_per_turn=16"])
+    scenario = read_scenario(SCENARIOS / "fms_reference.toml", ["run.turns=12", "run.samples_per_turn=16"])
     whole = simulate(scenario, tmp_path / "whole.h5")
     first = simulate(scenario, tmp_path / "part.h5", stop=lambda: True)
     assert first.status == "interrupted"

@@ -66,8 +66,7 @@ def test_the_run_turns_and_decays_with_them():
     assert np.max(np.abs(fit - left[inside])) < 0.01 * np.max(np.abs(left))
 
 
-@pytest.mark.parametrize("start", [(3e-7, 1.5e-7), (5e-7, 2e-7)])
-@pytest.mark.parametrize("q", [1.65, 1.62])
+@pytest.mark.parametrize("q, start", [(1.65, (3e-7, 1.5e-7)), (1.65, (5e-7, 2e-7)), (1.62, (5e-7, 2e-7))])
 def test_hang_up_is_named(q, start):
     run = quasi_static.quasi_static(q, start, RING, duration=0.02)
     assert run.status == "hang-up"

@@ -17,8 +17,7 @@ def errors(kind, number, seed=SEED):
 @pytest.mark.parametrize(
     ("kind", "number"),
     [
-        pytest.param("rub", 3, marks=pytest.mark.core),
-        ("rub", 18),
+        pytest.param("rub", 18, marks=pytest.mark.core),
         pytest.param("gas_rub", 1, marks=pytest.mark.slow),
         pytest.param("gas_waves", 4, marks=pytest.mark.core),
         ("gas_pads", 3),

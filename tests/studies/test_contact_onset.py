@@ -21,6 +21,7 @@ from sealdyn.studies._runner import run_study
 from sealdyn.studies.contact_onset import Settings, onset
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
+POINT = {"margin": 1e-3, "tolerance": 1e-5, "most": 1e3, "set": {}, "floor": False}
 CASES = {
     "fms": ("fms_reference", "rotor.runout", ["stator.misalignment=0"]),
     "fmr": ("fmr_reference", "stator.misalignment", []),
@@ -31,8 +32,7 @@ CASES = {
 def found(request):
     name, key, overrides = CASES[request.param]
     scenario = sealdyn.read_scenario(SCENARIOS / f"{name}.toml", overrides)
-    point = {"key": key, "margin": 1e-3, "tolerance": 1e-5, "most": 1e3, "set": {}, "floor": False}
-    return request.param, scenario, key, onset(scenario, point)
+    return request.param, scenario, key, onset(scenario, {"key": key, **POINT})
 
 
 @pytest.mark.core
@@ -83,16 +83,16 @@ def test_plain_runs_touch_just_above_and_not_just_below(found):
         assert outcome.status == status, (part, ready.extrema.records[0, 0])
 
 
-def test_rough_faces_touch_where_their_asperities_meet():
+@pytest.mark.parametrize("found", ["fmr"], indirect=True)
+def test_rough_faces_touch_where_their_asperities_meet(found):
     """The steady orbit of a run at the onset comes down to three rms roughnesses, and no asperity carries yet."""
     contact = 'contact={roughness="0.3 um", compressive_strength="300 MPa"}'
     scenario = sealdyn.read_scenario(SCENARIOS / "fmr_reference.toml", [contact])
-    point = {"key": "stator.misalignment", "margin": 1e-3, "tolerance": 1e-5, "most": 1e3, "set": {}, "floor": False}
-    answer = onset(scenario, point)
+    answer = onset(scenario, {"key": "stator.misalignment", **POINT})
     scene = with_values(scenario, {"stator.misalignment": answer["nonlinear"], "run.start": "steady"}).scene
     orbit = Shooter(scene, 1e-8, tight=1e-10).find(np.array(answer["start"]))
     assert orbit.extremes["h_min"]["value"] == pytest.approx(0.9e-6, abs=1e-5 * 1e-5)
-    alone = onset(sealdyn.read_scenario(SCENARIOS / "fmr_reference.toml"), point)
+    *_, alone = found
     assert answer["nonlinear"] < 0.9 * alone["nonlinear"] and answer["formula"] < 0.95 * alone["formula"]
 
 

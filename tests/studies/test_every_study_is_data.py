@@ -21,7 +21,7 @@ SMALL = {
     "coefficients": ("fmr_reference", {}, {"points": 5, "frequency": "0:2kHz:3"}),
     "contact-onset": ("fms_reference", {"stator.misalignment": 0},
                       {"margin": 0.6, "over": "film.coning", "values": "2 mrad"}),
-    "critical-speed": ("fms_reference", {}, {"turns": 50, "speeds": 1}),
+    "critical-speed": ("fms_reference", {}, {"turns": 20, "speeds": 1}),
     "elastic-ring": ("lebeck_elastic", {"film.reynolds.cells_r": 6, "film.reynolds.cells_theta": 108}, {}),
     "equilibrium": ("run_in", {}, {"points": 21}),
     "failures": ("fms_reference", {}, {"items": 3}),

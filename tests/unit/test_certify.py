@@ -182,7 +182,7 @@ def followed(ready, method, trial, sharp=1e-13):
 
 
 @pytest.mark.parametrize("method", ["adams", "bdf"])
-@pytest.mark.parametrize("accuracy", [1e-3, 1e-5, 1e-7])
+@pytest.mark.parametrize("accuracy", [1e-3, 1e-7])
 @pytest.mark.parametrize("name,start", [("fmsr", "rest"), ("shaken", "rest"), ("larger", "rest"), ("larger", "steady")])
 def test_a_tolerance_on_trial_keeps_the_accuracy(name, start, method, accuracy):
     """Looser than the cautious one, and the run at it is still as exact as was asked; its own steps tell its error

@@ -143,12 +143,12 @@ def seal(table, **stator):
 def test_a_run_that_leaves_what_the_film_has_solutions_for_ends_in_words(method):
     """Pressure that rises on a dam that opens outwards, held open, until its entrance chokes."""
     rising, held = (
-        PiecewiseLinear((0.0, 0.1), (2e5, 8e6)),
+        PiecewiseLinear((0.0, 0.02), (2e5, 8e6)),
         Support(axial_stiffness=1e10, axial_damping=1e4, radius=0.085),
     )
     table = film(inner_pressure=rising, coning=2.2e-2, clearance=9e-6)
-    found = run(seal(table, support=held), 10.0, method=method)
-    assert found.outcome.status == Status.FAILED and found.outcome.tau < 0.04
+    found = run(seal(table, support=held), 2.0, method=method)
+    assert found.outcome.status == Status.FAILED and found.outcome.tau < 0.008
     assert "chokes at the entrance" in found.outcome.message
 
 

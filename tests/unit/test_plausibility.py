@@ -164,7 +164,7 @@ GAS = ["film.viscosity=2e-5 Pa*s", "film.coning=0", "stator.misalignment=0", "ro
 def test_a_gas_that_leaves_fast():
     """Mach number at the low pressure of the isothermal flow between parallel faces, in words of its own."""
     path = SCENARIOS / "gas_reynolds_reference.toml"
-    coarse = [*GAS, "film.gas_reynolds.cells=[24, 8]"]
+    coarse = [*GAS, "film.gas_reynolds.cells=[24, 8]", "run.turns=0.05"]
     wide = [*coarse, "film.clearance=9 um"]
     found = cautions(*wide, path=path)
     flow = (9e-6) ** 3 * (11e5**2 - 1e5**2) / (24 * 2e-5 * 296.8 * 313.15 * 0.060 * np.log(70 / 60))

@@ -221,7 +221,7 @@ def test_allowed_also_holds_where_wear_hastens_wear():
         return Average(nodal, float(nodal.sum()))
 
     start = WearState(0.0, np.zeros(17))
-    found = [w.depth for w, _ in advance(hastening, HatBasis(radius), start, 1.5 * HOUR, control(1.0, 0.05))]
+    found = [w.depth for w, _ in advance(hastening, HatBasis(radius), start, 1.2 * HOUR, control(1.0, 0.05))]
     assert np.ptp(np.diff(found, axis=0), axis=1).max() <= 0.05 * ROUGH * (1 + 1e-12)
 
 
