@@ -62,6 +62,10 @@ class Collocated:
         if contact and self.film.model == "reynolds" and (options is None or options.roughness == "christensen"):
             self.floor, self.rough = 0.0, 3.0 * contact.roughness
 
+    def pads(self, r, theta):
+        """By how much (m) pads make the film thicker."""
+        return pattern(replace(self.scene, stator=Stator(), rotor=Rotor()), r, theta) if self.film.pads else 0.0 * theta
+
     def height(self, now, gap, r, theta):
         """Distance of the mean planes (m) and its rate (m/s) at radii and angles that broadcast."""
         aligned, g_x, g_y, rate, g_x_rate, g_y_rate = gap
@@ -69,10 +73,7 @@ class Collocated:
         h = aligned + self.film.coning * (r - self.film.inner_radius) + r * (g_x * sin - g_y * cos)
         h_rate = rate + r * (g_x_rate * sin - g_y_rate * cos)
         # Pads, and the waves of each ring where it is now.
-        still = 0.0 * theta
-        if self.film.pads:
-            still = pattern(replace(self.scene, stator=Stator(), rotor=Rotor()), r, theta)
-        h, h_rate = h + still, h_rate + 0.0 * theta
+        h, h_rate = h + self.pads(r, theta), h_rate + 0.0 * theta
         for sign, ring, side in ((1.0, self.scene.stator, "_s"), (-1.0, self.scene.rotor, "_r")):
             for wave in ring.waviness:
                 at = wave.order * (theta - now["phi" + side]) + wave.phase
@@ -232,11 +233,12 @@ class OwnPatterned(OwnSeal):
         return self.collocated.rates_and_loads(now, gap, x)[1]
 
     def h_min(self, t, y):
-        """Thinnest film (m), on a grid of points."""
+        """Thinnest film (m), on a grid of points; pads count as land, as the program has it."""
         now = self._at(t, self.piece(t))
         gap = self._gap(self._motion(t, y, now)[1])
         r = np.linspace(self.film_edges[0], self.film_edges[1], 5)[:, None]
-        return float(self.collocated.height(now, gap, r, np.linspace(0.0, 2.0 * math.pi, 720))[0].min())
+        theta = np.linspace(0.0, 2.0 * math.pi, 720)
+        return float((self.collocated.height(now, gap, r, theta)[0] - self.collocated.pads(r, theta)).min())
 
     @property
     def film_edges(self):

@@ -19,7 +19,7 @@ from sealdyn.scene.gas import gas_of
 
 # Sectors over the root of clearance over touch: the thinner the film the sharper what it carries around the circle
 # (16 at a touch of 0.08 clearances erred by 2e-3 of the onset, 32 by 3e-6).
-SECTORS = 9.0
+SECTORS = 16.0
 
 
 def onset(scene, key, margin):

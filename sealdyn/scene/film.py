@@ -104,7 +104,7 @@ class Pads(Strict):
     count: int
     """Pads to the circle."""
     depth: Height
-    """By which the film is thicker in the pads."""
+    """By which the film is thicker in the pads; `h_min`, touch and contact take them for land."""
     angle: Angle
     """Of one pad, between the middles of its flanks."""
     inner_radius: Radius

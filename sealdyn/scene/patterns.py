@@ -83,7 +83,7 @@ class Grooves(Strict):
     count: int
     """Grooves to the circle."""
     depth: Height
-    """By which the film is thicker in them."""
+    """By which the film is thicker in them; `h_min` and touch take them for land."""
     inner_radius: Radius
     """Where they begin; that of the face where they open there."""
     outer_radius: Radius
