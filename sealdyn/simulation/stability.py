@@ -35,13 +35,13 @@ def stability(model, interval, linear, speeds: bool, failed: list[str] | None = 
     """Verdict, whirl ratio of the least damped tilt mode, growth rate and its uncertainty (1/s), speeds of the shaft
     and of the stator (rad/s), `fastest` that any shaft turns such a face (rad/s), and all modes of the scene `linear`,
     linearised at the interval's start; if `speeds` also `critical_speed`, `thresholds` and `resonance_speeds`, None
-    where it takes too long: a film that stores between wavy faces, over pads or grooves; or where the search has no
-    end, of which `failed` then tells."""
+    where it takes too long: over grooves, and a film that stores between wavy faces or over pads; or where the search
+    has no end, of which `failed` then tells."""
     found = linear.modes()
     speed = linear.rings[ROTOR].spin
     searched, failed = {}, [] if failed is None else failed
-    patterned = waves_of(model.scene) or model.scene.film.pads or grooves_of(model.scene)[1]
-    if speeds and model.interface.stores and patterned:
+    slow = model.interface.stores and (waves_of(model.scene) or model.scene.film.pads)
+    if speeds and (slow or grooves_of(model.scene)[1]):
         # Seconds at every speed: each way that the gap may move meets the film in its own way.
         searched = {"speeds_held": None, "critical_speed": None, "thresholds": None, "resonance_speeds": None}
     elif speeds:
