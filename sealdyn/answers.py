@@ -11,6 +11,9 @@ from typing import Any
 
 from .quantities import quantity, units_read
 
+# Styles of series that have no role, in order.
+CYCLE = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh")
+
 
 @dataclass(frozen=True)
 class Table:

@@ -1,4 +1,5 @@
-"""Studies: one file per question, found by file name (hyphens on the command line, underscores in files).
+"""Studies: one file per question, found by file name (hyphens on the command line, underscores in files); one of
+several files is a folder, whose `__init__` it is.
 
 What every study module offers (the contract):
 

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.linalg import eig
 from scipy.optimize import brentq, linear_sum_assignment
 
-from ..answers import Answer, Axis, Level, Panel, Series, Table
+from ..answers import CYCLE, Answer, Axis, Level, Panel, Series, Table
 from ..dynamics.model import Model
 from ..quantities import in_words, reading_in
 from ..scene.variants import frozen_at_start
@@ -36,7 +36,6 @@ SAME = 1e-9
 # Of a decrement: beyond, a mode hardly oscillates and its curve would hide the others.
 MOST_DECREMENT = 100.0
 DASHES = {"forward": "", "backward": "dashed", "axial": "dotted", "none": "dashdot"}
-CYCLE = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh")
 
 
 @dataclass(frozen=True)

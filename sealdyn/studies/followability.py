@@ -10,7 +10,7 @@ from typing import Annotated
 import numpy as np
 
 from ..analysis import radial_rules
-from ..answers import Answer, Axis, Level, Panel, Series, Table, table_of
+from ..answers import CYCLE, Answer, Axis, Level, Panel, Series, Table, table_of
 from ..dynamics.intervals import largest_value
 from ..quantities import in_words, number, reading_in
 from ..radial_seals.followers import followers_of, largest_eccentricity
@@ -38,7 +38,6 @@ INFO = Info(
 TURNS, ACCURACY = 3.0, 1e-6
 # Largest eccentricity that counts, of the radius.
 MOST = 0.2
-CYCLE = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh")
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from sealdyn.analysis.rotating_wave import RotatingWave, free_model, least_dampe
 from sealdyn.analysis.shooting import Shooter
 from sealdyn.analysis.whirl_in_time import whirl_fate
 from sealdyn.numerics import time_series
-from sealdyn.report.charts import study_rub
+from sealdyn.report import panels
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scene.variants import with_values
 from sealdyn.studies._runner import run_study
@@ -66,7 +66,7 @@ def test_exponent_of_a_periodic_rub_is_its_floquet_multiplier(reference):
 
 def test_chart_holds_every_turn_every_exponent_and_a_section(reference, tmp_path):
     answer, out = reference
-    figure = drawn(study_rub, out, tmp_path / "rub.png")
+    figure = drawn(panels, out, tmp_path / "rub.png")
     diagram, exponents = panel(figure, "Smallest film"), panel(figure, "Largest Lyapunov")
     words = ("growing", "falling")
     films = np.concatenate([line.get_ydata() for line in diagram.lines if str(line.get_label()).startswith(words)])

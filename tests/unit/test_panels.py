@@ -118,6 +118,4 @@ def test_a_long_table_is_thinned_but_keeps_both_ends():
 
 def test_few_charts_of_studies_have_a_file_of_their_own():
     charts = Path(panels.__file__).with_name("charts").glob("study_*.py")
-    assert sorted(path.stem for path in charts) == [
-        f"study_{n}" for n in ("rub", "runup", "tolerance", "work_precision")
-    ]
+    assert sorted(path.stem for path in charts) == [f"study_{n}" for n in ("runup", "tolerance", "work_precision")]

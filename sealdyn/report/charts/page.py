@@ -16,6 +16,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, LogFormatter, LogLocator, MaxNLocator, NullFormatter
 from PIL import Image
 
+from ...answers import CYCLE as CYCLED
 from ...quantities import printed
 from ...status import Status
 from ..text import question_of
@@ -41,7 +42,6 @@ STATUS = {Status.OK: GREEN, Status.INACCURATE: ORANGE, Status.COLLAPSED: VERMILL
 
 # Colours of lines that have no meaning of their own, in order.
 CYCLE = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, BLACK)
-CYCLED = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh")
 
 # Words of a style: colours by their meaning, dashes, marks.
 COLOURS = {

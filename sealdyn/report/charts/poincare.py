@@ -52,10 +52,10 @@ def section(run: Run, names):
     return whole, np.array([cubic(whole, phase, column) for column in columns])
 
 
-def around(x, y, least: float = 0.0, whole: float = 0.0) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Limits around a section in x and in y, equally far apart, at `least` so far apart; what is one point beside
-    its own size or that of the `whole` motion, to plotting accuracy, is shown where it lies."""
-    size, reach = max(np.abs(x).max(), np.abs(y).max(), whole, NOTHING), max(np.ptp(x), np.ptp(y), least)
+def around(x, y, whole: float = 0.0) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Limits around a section in x and in y, equally far apart; what is one point beside its own size or that of
+    the `whole` motion, to plotting accuracy, is shown where it lies."""
+    size, reach = max(np.abs(x).max(), np.abs(y).max(), whole, NOTHING), max(np.ptp(x), np.ptp(y))
     half = 0.6 * (reach if reach > EVEN * size else 0.2 * size)
     (x, y) = (0.5 * (values.min() + values.max()) for values in (x, y))
     return (x - half, x + half), (y - half, y + half)

@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from ...answers import Axis, Level, Panel, Series
+from ...answers import CYCLE, Axis, Level, Panel, Series
 from ...archive import read_study
 from ...quantities import everyday, in_words, quantity, reading_in
 from ..panels import study_sheet
 from ..text import written_units
-from .page import CYCLED, save
+from .page import save
 from .record import done
 
 # Of an extreme of a trip: the series it is of, its name, quantity, which extreme it is.
@@ -40,7 +40,7 @@ def draw(path, out):
 
 def _runs(answer):
     """(colour, row) of every run that was possible."""
-    return [(CYCLED[k % len(CYCLED)], row) for k, row in enumerate(done(answer["rows"]))]
+    return [(CYCLE[k % len(CYCLE)], row) for k, row in enumerate(done(answer["rows"]))]
 
 
 # --- shaft speed ------------------------------------------------------------------------------------------

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from ...answers import Axis, Level, Panel, Series
+from ...answers import CYCLE, Axis, Level, Panel, Series
 from ...archive import read_study
 from ...quantities import printed, shown_in
 from ..panels import study_sheet
-from .page import CYCLED, EVEN, number, power, save
+from .page import EVEN, number, power, save
 
 # Outputs that have a histogram, and keys that have a row.
 MOST, MOST_KEYS = 4, 10
@@ -168,7 +168,7 @@ def _totals(answer) -> Panel:
     """Total indices of the first output over the number of samples."""
     found, series = answer["convergence"], []
     for n, row in enumerate(answer["tighten"][found["output"]]):
-        style, label = (CYCLED[n], row["key"]) if n < 5 else ("grey", "")
+        style, label = (CYCLE[n], row["key"]) if n < 5 else ("grey", "")
         total = np.array(found["total"][row["key"]], dtype=float)
         series.append(Series("line", found["samples"], total, label=label, style=f"{style} thin circle small"))
     axis = Axis("1", f"total index of {found['output']}", low=0.0)
