@@ -1,5 +1,6 @@
 """What an archive says is a stranger's word: it names no place where anything is written, and no file that is read."""
 
+import shutil
 from pathlib import Path
 
 import h5py
@@ -23,8 +24,15 @@ def plain(tmp_path, motion=""):
     return read_scenario(tmp_path / "own" / "seal.toml", SHORT)
 
 
-def altered(path, **words):
-    """The archive with other root attributes, sealed anew."""
+@pytest.fixture(scope="module")
+def archive(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("run")
+    return simulate(plain(folder), folder / "a.h5").archive
+
+
+def altered(archive, path, **words):
+    """A copy of the archive with other root attributes, sealed anew."""
+    shutil.copyfile(archive, path)
     with h5py.File(path, "r+") as file:
         for name, word in words.items():
             del file.attrs[name]
@@ -35,13 +43,12 @@ def altered(path, **words):
 
 @pytest.mark.parametrize("name", ["../../planted", "/tmp/planted", "..", "a\nb", "C:\\planted", ".hidden", ""])
 @pytest.mark.parametrize("verb", ["study", "python"])
-def test_a_name_leads_nowhere(name, verb, tmp_path, monkeypatch):
+def test_a_name_leads_nowhere(name, verb, archive, tmp_path, monkeypatch):
     """A study of the archive writes below outputs."""
     home = tmp_path / "deep" / "home"
     home.mkdir(parents=True)
-    simulate(plain(tmp_path), tmp_path / "a.h5")
+    altered(archive, tmp_path / "a.h5", name=name)
     before = {path for path in tmp_path.rglob("*")}
-    altered(tmp_path / "a.h5", name=name)
     monkeypatch.chdir(home)
     if verb == "study":
         assert sealdyn("study", "equilibrium", tmp_path / "a.h5", "--no-plot", cwd=home).code == 0
@@ -61,16 +68,15 @@ SECRET = "time,axial (um)\n" + "".join(f"{0.001 * k},{0.1 * k}\n" for k in range
 
 @pytest.mark.parametrize("table", ["shaft", "housing"])
 @pytest.mark.parametrize("place", ["../secret.csv", "absolute", "secret.csv"])
-def test_an_archive_opens_no_motion_file(table, place, tmp_path, monkeypatch):
+def test_an_archive_opens_no_motion_file(table, place, archive, tmp_path, monkeypatch):
     """Neither from its folder nor from where the program is run; one that it holds is not looked for."""
     for folder in (tmp_path, tmp_path / "home"):
         folder.mkdir(exist_ok=True)
         (folder / "secret.csv").write_text(SECRET)
     place = str(tmp_path / "secret.csv") if place == "absolute" else place
     monkeypatch.chdir(tmp_path / "home")
-    simulate(plain(tmp_path), tmp_path / "a.h5")
     motion = f'[{table}.motion]\nfile = "{place}"'
-    altered(tmp_path / "a.h5", scenario=f"{SEAL.read_text()}\n{motion}\n")
+    altered(archive, tmp_path / "a.h5", scenario=f"{SEAL.read_text()}\n{motion}\n")
     with pytest.raises(ScenarioError) as error:
         read_scenario(tmp_path / "a.h5")
     assert error.value.key == f"{table}.motion.file"
@@ -81,9 +87,9 @@ def test_an_archive_opens_no_motion_file(table, place, tmp_path, monkeypatch):
     assert read_scenario(again.archive).scene == asked.scene
 
 
-def test_an_archive_starts_from_no_file(tmp_path):
+def test_an_archive_starts_from_no_file(archive, tmp_path):
     """Unless the user says so; what only shows it needs no file."""
-    first = simulate(plain(tmp_path), tmp_path / "first.h5").archive
+    first = Path(shutil.copyfile(archive, tmp_path / "first.h5"))
     second = simulate(read_scenario(SEAL, [*SHORT, f"run.start={first}"]), tmp_path / "second.h5").archive
     answer = sealdyn("run", second, "--no-plot", cwd=tmp_path)
     assert answer.code == 2 and "run.start" in answer.err and len(answer.err.splitlines()) == 1

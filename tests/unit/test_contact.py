@@ -91,7 +91,7 @@ def random_states(seed, number, coning, deepest=-2.0):
 def test_christensen_is_the_sum_over_the_face(coning):
     for mean in (False, True):
         f = face(coning, "mean" if mean else "local")
-        for state in random_states(7, 12, coning):
+        for state in random_states(7, 6, coning):
             found, exact = rub(CHRISTENSEN, f, *state), summed(pressed, coning, *state, mean=mean)
             for name, value in exact.items():
                 size = R_O * exact["force"] if name in "xy" else value
@@ -103,7 +103,7 @@ def test_christensen_is_the_sum_over_the_face(coning):
 @pytest.mark.parametrize("coning", [CONING, 0.0, -0.5e-3])
 def test_gaussian_is_the_sum_over_the_face(coning):
     """Within the fit: 1e-3 of Greenwood & Williamson's integrals, as long as h > -3 rms; wear was not asked for."""
-    for state in random_states(8, 12, coning, -1.0):
+    for state in random_states(8, 6, coning, -1.0):
         found, exact = rub(GAUSSIAN, face(coning), *state), summed(gaussian, coning, *state, angles=360, radii=101)
         assert found["wear"] == 0.0
         for name in ("force", "x", "y", "torque", "area", "energy"):

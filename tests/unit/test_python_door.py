@@ -111,7 +111,9 @@ def test_figures_of_a_run_are_written_as_lines_or_pixels(results, chart):
     figure = getattr(results[0].plot, chart)()
     lines = [len(ax.lines) + len(ax.collections) for ax in figure.axes]
     assert sum(lines) > 0
-    for form, begin in {"png": b"\x89PNG", "svg": b"<?xml", "pdf": b"%PDF"}.items():
+    forms = {"svg": b"<?xml", "png": b"\x89PNG", "pdf": b"%PDF"}
+    # Of one chart in all forms: how a figure is written does not depend on what is on it.
+    for form, begin in list(forms.items())[: None if chart == "overview" else 1]:
         figure.savefig(file := io.BytesIO(), format=form)
         assert file.getvalue().startswith(begin)
 

@@ -3,6 +3,7 @@
 import dataclasses
 import functools
 import math
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -118,12 +119,15 @@ def test_units_of_keys():
             si_unit(scenario().scene, key)
 
 
+schema = cache(schema_with_studies)
+
+
 @pytest.mark.parametrize("name", study_names())
 def test_every_setting_is_described_wherever_it_is_asked_for(name):
     """Help, JSON schema: what it holds, its unit, its default, what it means; and the time that the study takes."""
     _, seconds = study_info(name.replace("-", "_")).timed
     help = " ".join(help_text(name).split())
-    table = schema_with_studies()["properties"]["study"]["properties"][name.replace("-", "_")]
+    table = schema()["properties"]["study"]["properties"][name.replace("-", "_")]
     assert f"{seconds} s of processor time" in help and f"{seconds} s of processor time" in table["description"]
     fields = dataclasses.fields(study_module(name.replace("-", "_")).Settings)
     assert fields and set(table["properties"]) == {field.name for field in fields}
