@@ -245,10 +245,15 @@ class ForcedWave:
     def __init__(self, scene, accuracy: float = 1e-8):
         self.model, self.work = Model(scene, accuracy), 0
         self.segment, unknowns = self.model.segment(), self.model.unknowns
-        tilts = self.segment.rows[:, 1]
-        speeds = set(self.segment.rows[np.isin(tilts, (OWN, TURNING)), 7])
-        one = self.segment.harmonic and unknowns.constant and np.all(np.isin(tilts, (OWN, TURNING)))
-        if not one or len(speeds) > 1 or unknowns.massless or unknowns.coulomb_rings or face_orders(scene):
+        kinds, speeds = self.segment.rows[:, 1], set(self.segment.rows[:, 7])
+        one = self.segment.harmonic and unknowns.constant and np.all(np.isin(kinds, (OWN, TURNING)))
+        self.turning = self.model.interface.film.frame
+        if self.turning is not None:
+            # A pattern has to turn with the forcing.
+            speeds.add(self.turning(self.model.f, self.segment.gap_state(0.0, np.zeros(self.segment.size))))
+        elif face_orders(scene):
+            one = False
+        if not one or len(speeds) > 1 or unknowns.massless or unknowns.coulomb_rings:
             raise NotOneSpeed("the forcing does not turn at one speed alone")
         self.speed = speeds.pop() if speeds else 0.0
         self.wave = RotatingWave(self.model)
@@ -258,10 +263,11 @@ class ForcedWave:
         """Unknowns (size,) of displacements `q` (n,) that turn with the forcing, a film of its own steady there."""
         y = self.wave.state(q, self.speed)
         if self.model.interface.unknowns is not None:
-            # In this frame no gap moves, and the faces drag the fluid by so much less.
             s = self.segment.gap_state(0.0, y).copy()
-            s[[DZ_RATE, GX_RATE, GY_RATE]] = 0.0
-            s[MEAN_SPIN] -= self.speed
+            if self.turning is None:
+                # In this frame no gap moves, and the faces drag the fluid by so much less.
+                s[[DZ_RATE, GX_RATE, GY_RATE]] = 0.0
+                s[MEAN_SPIN] -= self.speed
             y[self.segment.film] = self.model.interface.steady(self.model.f, s)
         return y
 
@@ -315,6 +321,11 @@ class ForcedWave:
         extremes = {"h_min": least, "relative_misalignment": {"max": tilt, "min": tilt}, "collapsed": False}
         start, period = y[: self.model.unknowns.n_mechanical], RunState(self.model, 1.0).period()
         return Orbit(period, start, None, None, residual, 0, extremes)
+
+    def relative(self, orbit) -> complex:
+        """Relative tilt g_x + i g_y (rad) of an orbit at the forcing's start."""
+        s = self.segment.gap_state(0.0, self.state(orbit.start[: self.wave.n]))
+        return complex(s[GX], s[GY])
 
     def multiplier(self, orbit) -> float | None:
         """Largest modulus of the Floquet multipliers of an orbit; None of a film that stores."""

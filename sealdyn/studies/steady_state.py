@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from ..analysis.shooting import NoOrbit, Shooter
+from ..analysis.shooting import ForcedWave, NoOrbit, Shooter
 from ..answers import Answer, Axis, Level, Panel, Series, Table, table_of
 from ..dynamics import modes
 from ..dynamics.model import Model
@@ -28,6 +28,7 @@ INFO = Info(
     timed=("fms_reference", 5),
     asks="What is the periodic steady state?",
     wavy=True,
+    grooved=True,
     units={
         "period": "s", "time": "s", "h_min": "m", "speed": "rad/s",
         **dict.fromkeys(("relative_tilt_x", "relative_tilt_y", "relative_misalignment", "shaft_angle"), "rad"),
@@ -68,7 +69,10 @@ def run(scenario, settings, tools) -> Answer:
     try:
         shooter = Shooter(scenario.scene, scenario.run.accuracy, settings.turns)
     except NoOrbit as reason:
-        return _time_domain(scenario, str(reason))
+        try:
+            return _turning(ForcedWave(scenario.scene, scenario.run.accuracy), settings)
+        except NoOrbit:
+            return _time_domain(scenario, str(reason))
     linear = shooter.model.linear_scene()
     critical, verdict = critical_speed(shooter.model), modes.verdict(linear.modes())
     try:
@@ -110,6 +114,29 @@ def run(scenario, settings, tools) -> Answer:
     kind = "stable" if orbit.stable else "UNSTABLE"
     found = f"The periodic steady state is {kind}; h_min {in_words('h_min', waves['h_min']['value'], digits=5)}."
     return Answer(numbers, found, _tables(numbers), _panels(numbers))
+
+
+def _turning(wave, settings) -> Answer:
+    """Of a film that stores: what turns with its forcing, a point of that frame."""
+    orbit = wave.find()
+    tilt, low = wave.relative(orbit), orbit.extremes["h_min"]
+    times = np.linspace(0.0, orbit.period, settings.samples)
+    turned = tilt * np.exp(1j * wave.speed * times)
+    names = wave.model.unknowns.names
+    numbers = {
+        "period": orbit.period, "multipliers": None, "stable": None, "residual": orbit.residual, "periods_used": 0,
+        "h_min": low, "relative_misalignment": orbit.extremes["relative_misalignment"], "linear": None,
+        "unknowns": names, "start": {name: float(x) for name, x in zip(names, orbit.start, strict=False)},
+        "orbit": {"time": times.tolist(), "relative_tilt_x": turned.real.tolist(),
+                  "relative_tilt_y": turned.imag.tolist(),
+                  "relative_misalignment": np.full(len(times), abs(tilt)).tolist(),
+                  "h_min": np.full(len(times), low["value"]).tolist()},
+        "near_threshold": [], "critical_speed": None,
+    }  # fmt: skip
+    film = in_words("h_min", low["value"], digits=5)
+    found = f"The steady state turns with its forcing, at {in_words('speed', wave.speed)}; h_min {film}."
+    note = "Whether the seal keeps it is not known: the film stores."
+    return Answer(numbers, found, _tables(numbers), _panels(numbers), [note])
 
 
 def _samples(shooter, asked: int) -> int:
