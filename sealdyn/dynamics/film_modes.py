@@ -15,9 +15,10 @@ from .condensation import factored
 # How far modes are looked for, in the fastest eigenvalue of the rings on the film's stiffness and damping at that very
 # frequency: right of the imaginary axis a film that delays its forces is no stiffer, so nothing faster than this grows.
 REACH, SHRINKINGS = 3.0, 6
-# Largest residual, as a share of the answer; what a basis vector adds at least, above the rounding of derivatives;
-# least motion of the rings in a mode, as a share of what it does to the film; answers and rounds at most.
-SOLVED, NEW, STILL, MOST_ANSWERS, MOST_ROUNDS = 1e-8, 1e-10, 1e-9, 40, 12
+# Largest residual, as a share of the answer, and of what is worth a closer look; what a basis vector adds at least,
+# above the rounding of derivatives; least motion of the rings in a mode, as a share of what it does to the film;
+# answers and rounds at most.
+SOLVED, LIKELY, NEW, STILL, MOST_ANSWERS, MOST_ROUNDS = 1e-8, 1e-3, 1e-10, 1e-9, 40, 12
 # Modes that are made exact: so many of those next to growing; iterations,
 # how exact (relative), and how near they were.
 EXACT, ITERATIONS, CONVERGED, NEAR = 8, 8, 1e-10, 0.05
@@ -207,13 +208,16 @@ def coupled_modes(linear, reach: float) -> tuple[np.ndarray, np.ndarray, Reduced
             reduced.add(complex(value))
         # With the answer there in the basis already, it is the basis that has a mode there, not rings and film.
         if reduced.basis.shape[1] == size:
-            return *_exact(linear, values[solved], q[:, solved]), reduced
+            # Eigenvectors that are nearly one another's leave a residual of modes that are known well.
+            first = np.isin(np.arange(len(values)), np.argsort(-values.real, kind="stable")[: 2 * EXACT])
+            known = solved | (first & (left < LIKELY))
+            return *_exact(linear, values[known], q[:, known], solved[known]), reduced
     raise _unsettled(values, left)
 
 
-def _exact(linear, values, shapes) -> tuple[np.ndarray, np.ndarray]:
+def _exact(linear, values, shapes, solved) -> tuple[np.ndarray, np.ndarray]:
     """The eigenvalues and shapes, those EXACT with the largest real parts by inverse iteration on rings and film
-    themselves.
+    themselves; without those that are neither `solved` (m,) nor found so.
 
     **Source** Ruhe (1973), SIAM J. Numer. Anal. 10, 674: inverse iteration for nonlinear eigenproblems."""
     film, gap = linear.film, linear.gap
@@ -223,7 +227,7 @@ def _exact(linear, values, shapes) -> tuple[np.ndarray, np.ndarray]:
     def dynamic(p):
         return linear.mass * p * p + damping * p + stiffness + gap.T @ film.stiffness(p) @ gap
 
-    values, shapes = values.astype(complex), shapes.astype(complex)
+    values, shapes, sure = values.astype(complex), shapes.astype(complex), solved.copy()
     upper = [k for k in np.argsort(-values.real) if values[k].imag >= 0.0][:EXACT]
     for k in upper:
         partner = int(np.argmin(np.abs(values - values[k].conj())))
@@ -241,6 +245,7 @@ def _exact(linear, values, shapes) -> tuple[np.ndarray, np.ndarray]:
             change = 1.0 / (q.conj() @ answer)
             p, q = p - change, answer / np.linalg.norm(answer)
             if abs(change) < CONVERGED * abs(p):
+                sure[[k, partner]] |= abs(p - values[k]) < NEAR * abs(p)
                 break
         # One that leads elsewhere was well known, or is none of its own.
         if abs(p - values[k]) < NEAR * abs(p):
@@ -248,7 +253,7 @@ def _exact(linear, values, shapes) -> tuple[np.ndarray, np.ndarray]:
                 p, q = complex(p.real), q * np.exp(-1j * np.angle(q[np.argmax(np.abs(q))]))
             values[partner], shapes[:, partner] = np.conj(p), q.conj()
             values[k], shapes[:, k] = p, q
-    return values, shapes
+    return values[sure], shapes[:, sure]
 
 
 # --- Tilts of a film that is alike all round, over the shaft speed -------------------------------------

@@ -10,7 +10,7 @@ from .excitation import motion_errors, random_errors
 from .film import aligned_gaps, coned, follows_speed, pads_errors, profile_errors, reynolds_errors
 from .gas import GASES, gas_of
 from .liquid import heat_errors, liquid_errors
-from .patterns import grooves_errors, waves_of, waviness_errors
+from .patterns import grooves_errors, grooves_of, waves_of, waviness_errors
 from .rings import body_errors, elastic_errors, secondary_seal_errors
 from .scene import SceneError
 from .sweep import sweep_errors
@@ -363,8 +363,11 @@ def unused(scene, given: set[str]) -> list[str]:
         leaves += ["rotor.misalignment", "rotor.misalignment_phase"]
     else:
         leaves += ["rotor.runout", "rotor.runout_phase"]
-    if scene.film.model != "reynolds":
+    grooved = bool(grooves_of(scene)[1])
+    if scene.film.model != "reynolds" and not grooved:
         leaves.append("film.reynolds.")
+    cells = ("gas_reynolds.cells", "reynolds.cells_r", "reynolds.cells_theta", "reynolds.grid_accuracy")
+    leaves += [f"film.{key}" for key in (cells if grooved else ("gas_reynolds.columns", "reynolds.columns"))]
     if scene.film.gas is not None:
         leaves += [f"film.{key}" for key in ("density", "specific_heat", "vapour_pressure", "coefficients")]
         leaves += [f"film.{name}." for name in ("gas_dam", "gas_reynolds") if scene.film.model not in (name, "auto")]

@@ -20,6 +20,8 @@ from . import Strict
 
 # Most waves of both faces together: kernels keep room for them.
 MOST_WAVES = 16
+# Most columns of triangles to a pitch: a run takes minutes with half of them.
+MOST_COLUMNS = 48
 # Finer than a hundredth of the circle a surface is rough or grooved, not wavy.
 HIGHEST_ORDER = 100
 
@@ -172,6 +174,10 @@ def _beside_errors(scene) -> list[tuple[str, str, str]]:
         for key, value in has.items()
         if not (value is None or value is False or value == [])
     ]
+    for name in ("gas_reynolds", "reynolds"):
+        options = getattr(film, name)
+        if options is not None and not 2 <= options.columns <= MOST_COLUMNS:
+            bad.append((f"film.{name}.columns", f"{options.columns}", f"2 to {MOST_COLUMNS}"))
     if film.model not in models:
         bad.append(("film.model", f'"{film.model}"', f'"{models[0]}" or "{models[1]}"'))
     for key, only in (("geometry", "cylindrical"), ("tilt_radius", "local")):

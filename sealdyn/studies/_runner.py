@@ -209,8 +209,8 @@ def _refuse_seal(name: str, info: Info, scene):
     if _is_radial(scene):
         return
     if (face := grooves_of(scene)[0]) and not info.grooved:
-        expected = f"none: this study ({name}) does not reckon with grooves, as coefficients, campbell and sweep do"
-        raise SceneError(f"{face}.grooves", "grooves in a face", expected)
+        served = "none, or one of the studies equilibrium, load-support, stribeck, coefficients and sweep, or a run"
+        raise SceneError(f"{face}.grooves", "grooves in a face", f"{served}: {name} does not reckon with grooves")
     if info.wavy:
         return
     if waves_of(scene):

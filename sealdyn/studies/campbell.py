@@ -21,7 +21,6 @@ INFO = Info(
     asks="At which frequencies does the seal whirl?",
     refuses=("secondary-seal",),
     wavy=True,
-    grooved=True,
     units={
         **dict.fromkeys(("speed", "frequency", "signed_frequency"), "rad/s"), "growth_rate": "1/s",
         **dict.fromkeys(("log_decrement", "lines", "line", "mode", "whirl_ratio"), "1"),

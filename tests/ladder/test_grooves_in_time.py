@@ -9,11 +9,12 @@ import pytest
 from gas_faces import gap_state
 from grooved_faces import R_I, R_O
 from scenes import run
-from scipy.optimize import fsolve
+from scipy.optimize import brentq, fsolve
 from scipy.sparse.linalg import splu
 
 from sealdyn.dynamics.condensation import FilmDerivatives
 from sealdyn.dynamics.interface import Interface, rest_state
+from sealdyn.dynamics.model import Model
 from sealdyn.faces.geometry import (
     DZ,
     DZ_RATE,
@@ -30,9 +31,18 @@ from sealdyn.faces.geometry import (
 )
 from sealdyn.films import film_named, film_of
 from sealdyn.films._grooved.aligned import aligned_film
-from sealdyn.films._grooved.cells import halved, node_table, prepared, state
+from sealdyn.films._grooved.cells import halved, land_rates, node_table, prepared, state
 from sealdyn.films._grooved.film import leaving
-from sealdyn.films._grooved.motion import Motion, Ring, misalignment_answer, runout_answer
+from sealdyn.films._grooved.motion import (
+    Motion,
+    Ring,
+    axial_law,
+    misalignment_answer,
+    root_near,
+    runout_answer,
+    tilt_law,
+)
+from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scene.excitation import Shaft
 from sealdyn.scene.film import Film, Reynolds
 from sealdyn.scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE, GasReynolds
@@ -122,7 +132,7 @@ def test_what_the_cells_store_comes_over_the_edges(table):
     x = tilted(film, f, x, s)
     x *= 1.0 + 0.1 * np.sin(17.0 * np.arange(len(x)))
     film.flow(f, s, x)
-    _, p = state(f, s, x)
+    land, p = state(f, s, x)
     out, res, nodes = np.empty(p.shape), np.empty(len(x)), node_table(f)
     leaving(f, s, p, out)
     film.residual(f, s, x, 0.0 * x, res)
@@ -130,7 +140,9 @@ def test_what_the_cells_store_comes_over_the_edges(table):
     stored = -float(np.sum(nodes[5][free] * res.reshape(len(p), -1)))
     if not table.gas:
         # The room that the faces make is filled.
-        return
+        rates = np.empty(p.shape)
+        land_rates(f, s, land, rates)
+        stored += float(np.sum(nodes[5][free] * rates[:, free]))
     edges = out[:, ~free]
     assert stored == pytest.approx(edges.sum(), abs=1e-12 * np.abs(out).sum())
 
@@ -321,6 +333,52 @@ def test_a_liquid_over_grooves_runs():
     expected = runout_answer(motion, FREE, 2e-7, 300.0) + misalignment_answer(motion, FREE, 2e-7)
     assert abs(tilt - expected) < 0.01 * abs(expected - 2e-7)
     assert done["leakage_inner"][-1] < 0.0
+
+
+def test_modes_are_the_roots_of_one_pitch_with_the_ring():
+    """Of a stator over grooves that turn: its axial motion, and those of the film in which it hardly moves."""
+    scene = seal(rotor={"runout": 1e-6})
+    modes = Model(scene).linear_scene().modes()
+    motion = Motion(aligned_film(scene, GAS.clearance, 4).coarse, W)
+    for law, kind, start in (
+        (axial_law, "axial", 4.5e4j),
+        (axial_law, "axial", -2.7e3),
+        (tilt_law, "tilt", -3e3 + 4e2j),
+    ):
+        root = root_near(law(motion, FREE), start)
+        nearest = min((abs(mode.value - root), mode.kind) for mode in modes)
+        assert nearest[0] < 1e-7 * abs(root) and nearest[1] == kind
+    assert modes[0].value == pytest.approx(root, rel=1e-7) and modes[0].direction == "forward"
+
+
+def test_a_faster_shaft_lifts_to_the_balance_of_its_speed():
+    """From 500 to 1000 rad/s, at the closing force of the slower speed."""
+    speed = PiecewiseLinear((0.0, 0.002, 0.012, 0.02), (500.0, 500.0, W, W))
+    scene = seal(speed=speed, rotor={"runout": 1e-9})
+    done = run(scene, duration=0.02, accuracy=1e-4, method="ida")
+    table = film_of(scene).prepared(scene)
+    slow, fast = (film_of(scene).opening_law(table, 0.5 * w, w) for w in (500.0, W))
+    closing = slow(3e-6, 1e5, 5e5)
+    lift = brentq(lambda z: fast(3e-6 + z, 1e5, 5e5) - closing - 1.64e4 * z, 0.0, 2e-6)
+    assert done.outcome.status == "ok" and done.q[0, 0] == 0.0
+    # The law is read between clearances.
+    assert done.q[-1, 0] == pytest.approx(lift, rel=1e-4) and lift > 5e-7
+
+
+def test_pressures_are_shown_where_the_grooves_have_turned_to():
+    film, f, x, s = ready(seal())
+    assert film.start(f, s, x) == 0
+    radii, angles = film.grid(f)
+    shown = np.empty((2, 1, len(radii), len(angles)))
+    for k, out in enumerate(shown):
+        s[27] = k * angles[1]
+        film.fields(f, s, x, out)
+    assert shown[1, 0] == pytest.approx(np.roll(shown[0, 0], 1, axis=1), rel=1e-9)
+    assert shown[0, 0, [0, -1]] == pytest.approx(np.array([[1e5], [5e5]]) * np.ones(len(angles)), rel=1e-6)
+    # What they press, roughly, is the force.
+    pressed = np.trapezoid(shown[0, 0].mean(axis=1) * radii, radii) * 2.0 * math.pi
+    film.wrench(f, s, x)
+    assert pressed == pytest.approx(s[FORCE], rel=5e-3)
 
 
 @pytest.mark.slow

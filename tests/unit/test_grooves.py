@@ -11,14 +11,15 @@ from grooved_faces import AREA, R_I, R_O, ROWS
 from sealdyn import read_scenario, run_study
 from sealdyn.analysis.check import checked
 from sealdyn.dynamics.equilibrium import settle
-from sealdyn.dynamics.interface import opening_law
+from sealdyn.dynamics.interface import Interface, opening_law
 from sealdyn.films import film_of
 from sealdyn.films._grooved.aligned import aligned_film, extrapolated_force
 from sealdyn.films._grooved.motion import tilt_law, unstable_roots
 from sealdyn.report.text import resolved_lines
-from sealdyn.scene.checks import scene_errors
+from sealdyn.scene.checks import scene_errors, unused
 from sealdyn.scene.excitation import Shaft
 from sealdyn.scene.film import Film
+from sealdyn.scene.gas import GasReynolds
 from sealdyn.scene.patterns import Grooves
 from sealdyn.scene.rings import Rotor, Stator, Support
 from sealdyn.scene.scene import Closing, Scene, SceneError
@@ -225,6 +226,31 @@ def test_two_grooves_have_an_equilibrium_but_no_one_stiffness_in_tilt():
     with pytest.raises(SceneError) as refused:
         modes(scene, found)
     assert refused.value.key == "rotor.grooves.0.count"
+
+
+def test_what_no_run_over_grooves_takes():
+    """Fewer than three pitches, a liquid that would tear, columns without number."""
+    two = seal(rotor=[replace(SPIRAL, count=2)])
+    torn = seal(Film(R_I, R_O, 1.5e5, 1e5, viscosity=1e-3, clearance=3e-6), [replace(SPIRAL, angle=-SPIRAL.angle)])
+    for scene, key in ((two, "rotor.grooves.0.count"), (torn, "film.clearance")):
+        with pytest.raises(SceneError) as refused:
+            Interface(scene, 1e-8)
+        assert refused.value.key == key
+    for columns in (1, 1000):
+        wrong = seal(replace(GAS, gas_reynolds=GasReynolds(columns=columns)))
+        assert [error.key for error in scene_errors(wrong, RUN)] == ["film.gas_reynolds.columns"]
+
+
+def test_which_cells_are_used():
+    given = {"film.gas_reynolds.cells", "film.gas_reynolds.columns"}
+    assert unused(seal(), given) == ["film.gas_reynolds.cells"]
+    assert unused(seal(rotor=()), given) == ["film.gas_reynolds.columns"]
+
+
+def test_a_study_that_does_not_reckon_with_grooves_says_so(scenario, tmp_path):
+    with pytest.raises(SceneError) as refused:
+        run_study("campbell", scenario, tmp_path / "c.h5")
+    assert refused.value.key == "rotor.grooves"
 
 
 def test_the_ring_that_floats_spins_with_its_own_speed():
