@@ -17,6 +17,7 @@ What every source offers:
               remark        str, "" if there is nothing to say
             and what else tells the rows of this source apart.
 `COLUMNS`   of its table: heading, and key in a row; and if need be
+`DIGITS`    of its numbers, 6 unless told, and
 `shown(row)`  a row as its table has it, in units of a size to read.
 `place(row)`  which line a remark speaks of, a few words.
 
@@ -79,10 +80,10 @@ def report(found: dict[str, list[dict]]) -> None:
     """Print what `checks` returns: a table per source, its remarks below."""
     for count, (name, rows) in enumerate(found.items()):
         source = source_module(name)
-        shown = getattr(source, "shown", dict)
+        shown, digits = getattr(source, "shown", dict), getattr(source, "DIGITS", 6)
         cells = [
             [*source.COLUMNS],
-            *([_cell(key, row[key]) for key in source.COLUMNS.values()] for row in map(shown, rows)),
+            *([_cell(key, row[key], digits) for key in source.COLUMNS.values()] for row in map(shown, rows)),
         ]
         widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
         print("\n" * (count > 0) + source.TITLE)
@@ -92,8 +93,8 @@ def report(found: dict[str, list[dict]]) -> None:
             print(f"{', '.join(source.place(row) for row in rows if row['remark'] == remark)}: {remark}")
 
 
-def _cell(key: str, value) -> str:
+def _cell(key: str, value, digits: int) -> str:
     """A value of a row as its table has it."""
     if value is None or isinstance(value, str):
         return "-" if value is None else value.replace("_", " ")
-    return f"{100 * value:+.2f} %" if key == "deviation" else f"{value:.6g}"
+    return f"{100 * value:+.2f} %" if key == "deviation" else f"{value:.{digits}g}"

@@ -27,6 +27,7 @@ COVERS = "transmissibilities and critical speeds of FMR and FMS seals"
 COLUMNS = {"seal": "arrangement", "c": "inertia_ratio", "quantity": "quantity", "published": "published",
            "formula": "formula", "lin. algebra": "linear_algebra", "time domain": "time_domain",
            "deviation": "deviation", "verdict": "verdict"}  # fmt: skip
+ROADS = ("published", "formula", "linear_algebra", "time_domain")
 
 ACCURACY = 1e-8
 # The three methods must agree to this, relative.
@@ -203,3 +204,8 @@ def growth_rate(scene, turns: float = 200.0, method: str = "adams", accuracy: fl
     t, q, _ = recorder.arrays()
     late = t > 0.25 * run.duration
     return float(np.polyfit(t[late], np.log(np.hypot(q[late, at], q[late, at + 1])), 1)[0])
+
+
+def shown(row: dict) -> dict:
+    """A row that says where there is no such speed."""
+    return row | {name: "none" for name in ROADS if row[name] is None}

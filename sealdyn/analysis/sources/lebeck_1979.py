@@ -23,6 +23,7 @@ COVERS = "load support, friction and leakage of a wavy rough seal at rest"
 COLUMNS = {"waves": "order", "h_n/c": "amplitude", "quantity": "quantity", "published": "published",
            "reynolds": "computed", "independent": "independent", "deviation": "deviation",
            "verdict": "verdict"}  # fmt: skip
+DIGITS = 4
 SOURCE = "Lebeck, Teale & Pierce (1979), Table 3-1"
 # The scene: units of length are the outer radius and the half height of the asperities.
 INNER, OUTER, HALF = 0.045, 0.05, 0.5e-6
@@ -109,3 +110,8 @@ def _row(row, quantity, computed) -> dict:
 def place(row: dict) -> str:
     """Which line a remark speaks of."""
     return f"{row['order']} waves, {row['quantity'].replace('_', ' ')}"
+
+
+def shown(row: dict) -> dict:
+    """A row of which flat faces have no waves."""
+    return row | {"order": str(row["order"]) if row["amplitude"] else "none"}

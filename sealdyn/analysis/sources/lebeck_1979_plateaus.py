@@ -14,6 +14,7 @@ FILM = "reynolds"
 COVERS = "the same with faces worn to plateaus"
 COLUMNS = {"plateau/sigma_1": "truncation", "quantity": "quantity", "published": "published", "computed": "computed",
            "independent": "independent", "deviation": "deviation", "verdict": "verdict"}  # fmt: skip
+DIGITS = 5
 SOURCE = "Lebeck, Teale & Pierce (1979), Table 2-7"
 # Units of length are the outer radius and the composite rms roughness; three waves.
 ROUGHNESS = OUTER / 3e5

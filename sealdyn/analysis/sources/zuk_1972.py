@@ -30,6 +30,7 @@ COVERS = "leakage, force, its centre and exit Mach number of a sealing dam"
 COLUMNS = {"tilt, mrad": "tilt", "film, mil": "mean_film", "quantity": "quantity", "published": "published",
            "gas_dam": "computed", "independent": "independent", "tilt twice": "tilt_counted_twice",
            "deviation": "deviation", "verdict": "verdict"}  # fmt: skip
+DIGITS = 4
 
 SOURCE = "Zuk (1972), sealing dam at cruise"
 # Relative: the film against the print, and against the independent computation in its four digits.
