@@ -1,14 +1,15 @@
 """Which cases run.
 
 `pytest` runs of each file the cheapest cases up to a processor time that is the same for every file, every case marked
-`core` (the physics or the contract its file exists for), and every case not yet measured: the whole stays within
-`SECONDS` with warm kernels. A file or a case named on the command line runs in any case, and so does what `-k`, `-m` or
-`--lf` picks. `pytest --all` runs everything, `pytest --rest` what a plain `pytest` leaves out. A case marked `slow`
-(Dask, killed processes, full disks, long convergence studies) never runs by itself in a plain `pytest`.
+`core` (the physics or the contract its file exists for), and every case not yet measured, but for those that need a
+shared fixture which is dear and which no other case has paid for: the whole stays within `SECONDS` with warm kernels. A
+file or a case named on the command line runs in any case, and so does what `-k`, `-m` or `--lf` picks. `pytest --all`
+runs everything, `pytest --rest` what a plain `pytest` leaves out. A case marked `slow` (Dask, killed processes, full
+disks, long convergence studies) never runs by itself in a plain `pytest`.
 
 `pytest --measure` runs everything and writes `durations.json`, which is committed: seconds of processor time, child
 processes included, by file and case, and the time a file may take. A fixture shared by several cases stands by itself,
-as `@name`, paid by the first case that needs it. What takes less than `CHEAP` is not listed and always runs. With files
+as `@name`, paid by the first case that needs it. What takes less than `CHEAP` is not listed. With files
 named, only their times are written anew and the time a file may take stays.
 """
 
@@ -24,8 +25,8 @@ import pytest
 
 HERE = Path(__file__).parent
 DURATIONS = HERE / "durations.json"
-# Processor time (s) of the cases of a plain run; the rest of 330 s is imports and collection in each process.
-SECONDS, CHEAP = 265.0, 0.05
+# Processor time (s) of the cases of a plain run; the rest of 300 s is imports and collection in each process.
+SECONDS, CHEAP = 215.0, 0.05
 
 if sys.dont_write_bytecode:
     # Most of the start of a process is compiling, half of the collection is rewriting asserts: both are kept.
@@ -62,16 +63,21 @@ def processor_time():
 
 def affordable(cases, seconds, allowed):
     """Names of the cases of a file that a plain run takes: core, cheap or unmeasured ones, and the cheapest others as
-    long as the file's time (s) is not spent. `cases`: name -> (core, shared fixtures); `seconds`: the file's times."""
-    chosen = [name for name, (core, _) in cases.items() if core or name not in seconds]
+    long as the file's time (s) is not spent. A case that is not listed is cheap only if its shared fixtures are, or
+    are there for others. `cases`: name -> (core, shared fixtures); `seconds`: the file's times."""
+
+    def listed(name):
+        return name in seconds or any(seconds.get("@" + fixture, 0.0) >= CHEAP for fixture, _ in cases[name][1])
+
+    chosen = [name for name, (core, _) in cases.items() if core or not listed(name)]
     paid = {fixture for name in chosen for fixture in cases[name][1]}
     spent = sum(seconds.get(name, 0.0) for name in chosen) + sum(seconds.get("@" + name, 0.0) for name, _ in paid)
 
     def price(name):
-        return seconds[name] + sum(seconds.get("@" + one[0], 0.0) for one in set(cases[name][1]) - paid)
+        return seconds.get(name, 0.0) + sum(seconds.get("@" + one[0], 0.0) for one in set(cases[name][1]) - paid)
 
     for name in sorted(cases.keys() - set(chosen), key=lambda name: (price(name), name)):
-        if spent + price(name) <= allowed:
+        if price(name) < CHEAP or spent + price(name) <= allowed:
             spent += price(name)
             paid |= set(cases[name][1])
             chosen.append(name)

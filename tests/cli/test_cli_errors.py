@@ -1,6 +1,7 @@
 """What goes wrong: bad input is one line and exit code 2, a closing film is a sentence and exit code 3."""
 
 import re
+from pathlib import Path
 
 import h5py
 import numpy as np
@@ -68,7 +69,9 @@ def test_bad_input_is_one_line(arguments, folder):
 
 
 @pytest.mark.parametrize(
-    "arguments", [a for a in BAD.values() if a[0] in HAVE_JSON], ids=lambda a: " ".join(map(str, a))
+    "arguments",
+    [a for a in BAD.values() if a[0] in HAVE_JSON],
+    ids=lambda a: " ".join(Path(word).name for word in map(str, a)),
 )
 def test_bad_input_is_one_object(arguments, folder):
     answer = sealdyn(*arguments, "--json", cwd=folder)

@@ -10,11 +10,10 @@ from command import REFERENCE, SCENARIOS, finished, sealdyn, settings, short, st
 
 from sealdyn import open_archive
 
-LONG = ("hang_up", "runup_past_threshold")
-SHIPPED = [
-    pytest.param(path, marks=pytest.mark.slow) if path.stem in LONG else path
-    for path in sorted(SCENARIOS.glob("*.toml"))
-]
+# A plain run has one of each kind of film.
+MARKS = dict.fromkeys(("hang_up", "runup_past_threshold"), pytest.mark.slow)
+MARKS |= dict.fromkeys(("fms_reference", "gas_dam_reference", "gas_reynolds_reference", "pump_seal"), pytest.mark.core)
+SHIPPED = [pytest.param(path, marks=MARKS.get(path.stem, ())) for path in sorted(SCENARIOS.glob("*.toml"))]
 CONTRACT = {
     "model": {"film", "unknowns", "solver", "start", "reasons", "unused"},
     "h_min": {"value", "time", "theta", "radius", "of_clearance"},

@@ -8,7 +8,7 @@ from warm_seals import scene_of
 
 from sealdyn.dynamics.warm_state import warming
 
-SEED, FEW, MANY, IN_TIME = 41, 20, 40, 10
+SEED, FEW, MANY, IN_TIME = 41, 20, 40, 7
 # Of rises and clearances; those of rough faces have a kink where the asperities of a part of the face begin to touch.
 SAME, ROUGH = 1e-5, 2e-4
 

@@ -1,4 +1,5 @@
-"""Elastic ring: the study from a scenario file, what it cannot be asked, runs with the waves that are left."""
+"""Elastic ring: what the study cannot be asked, runs with the waves that are left; its three wavinesses are held in
+test_every_study_is_data.py."""
 
 from pathlib import Path
 
@@ -6,21 +7,11 @@ import pytest
 
 from sealdyn import read_scenario, run_study, simulate
 from sealdyn.archive import read_study
-from sealdyn.report import panels
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scene.scene import SceneError
 
 FILE = Path(__file__).parents[2] / "scenarios" / "lebeck_elastic.toml"
 COARSE = ["film.reynolds.cells_r=6", "film.reynolds.cells_theta=108"]
-
-
-def test_three_wavinesses_by_two_roads(tmp_path):
-    answer = run_study("elastic-ring", read_scenario(FILE, COARSE), tmp_path / "s.h5", workers=1)
-    assert [point["stable"] for point in answer["points"]] == [True, False, True]
-    assert [point["comes_back"] for point in answer["points"]] == [True, False, True]
-    assert read_study(answer["archive"])["answer"]["points"] == answer["points"]
-    assert len(read_study(answer["archive"])["panels"][2]["series"]) == 6
-    assert panels.draw(answer["archive"], tmp_path / "s.png").exists()
 
 
 def test_no_point_in_the_range_is_said(tmp_path):

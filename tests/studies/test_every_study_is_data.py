@@ -76,9 +76,18 @@ def test_an_archive_of_any_study_is_a_dataset_and_tables(name, tmp_path):
     # An answer has a sentence, a table, and panels unless its chart has a file of its own; the archive draws itself.
     assert kept["answer"]["found"] and kept["answer"]["tables"] and bool(kept["panels"]) == bool(kept["asks"])
     assert draw(tmp_path / "s.h5").axes
+    if name == "elastic-ring":
+        _has_three_wavinesses_by_two_roads(kept)
     tables = answer_tables(kept)
     assert tables and all(len({len(column) for column in table.values()}) == 1 for table in tables.values())
     _is_printed(tables, tmp_path)
+
+
+def _has_three_wavinesses_by_two_roads(kept):
+    """By the slope of the balance and by letting go, of which the outer two are stable."""
+    for road in ("stable", "comes_back"):
+        assert [point[road] for point in kept["answer"]["points"]] == [True, False, True]
+    assert len(kept["panels"][2]["series"]) == 6
 
 
 def _is_printed(tables, folder):

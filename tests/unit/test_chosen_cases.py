@@ -75,9 +75,11 @@ def test_everything_not_measured_runs(suite):
 @pytest.mark.parametrize(
     "seconds, kept",
     [
-        (0.0, {"cheap", "core", "one"}),
-        # The unmeasured `one` has paid for the fixture: 0.4 s are spent before `two` and the first `dear`.
-        (0.47, {"cheap", "core", "one", "two"}),
+        # The cheap `one` needs a dear fixture.
+        (0.0, {"cheap", "core"}),
+        (0.47, {"cheap", "core", "dear[0.1]"}),
+        # It has paid for the fixture: 0.5 s are spent before `two`.
+        (0.53, {"cheap", "core", "dear[0.1]", "one"}),
         (0.57, {"cheap", "core", "one", "two", "dear[0.1]"}),
         (1.0, set(CASES) - {"slow"}),
     ],
@@ -111,7 +113,7 @@ def test_measured_times_choose_the_next_plain_run(suite, processes):
     """A budget below all: the dearest case of each file is left out, in one process and in two."""
     conftest = suite.path / "conftest.py"
     suite.makepyfile(spending="SPEND = True\n" + SPENDING)
-    conftest.write_text(conftest.read_text().replace("SECONDS, CHEAP = 265.0", "SECONDS, CHEAP = 1.5"))
+    conftest.write_text(conftest.read_text().replace("SECONDS, CHEAP = 215.0", "SECONDS, CHEAP = 1.5"))
     alike = ["-n", processes, "--dist", "loadfile"] if processes != "0" else ["-n", "0"]
     everything, left = ran(suite, "--measure", *alike)
     assert everything["a"] == everything["b"] == sorted(CASES) and left is None

@@ -104,16 +104,12 @@ RUB = Path(__file__).parents[2] / "scenarios" / "rub.toml"
 SEAL = ["stator.secondary_seal.radius=45 mm", "stator.secondary_seal.line_friction=40 N/m", "run.turns=45"]
 
 
-@pytest.fixture(scope="module")
-def whole(tmp_path_factory):
-    return simulate(read_scenario(RUB, SEAL), tmp_path_factory.mktemp("whole") / "whole.h5")
-
-
-@pytest.mark.parametrize("stop_at", [3, pytest.param(9, marks=pytest.mark.slow)])
-def test_continued_as_if_never_stopped(tmp_path, whole, stop_at):
+def test_continued_as_if_never_stopped(tmp_path):
+    """Stopped early; later, and more than once: test_continued_runs.py."""
     scenario = read_scenario(RUB, SEAL)
+    whole = simulate(scenario, tmp_path / "whole.h5")
     calls = iter(range(10**9))
-    first = simulate(scenario, tmp_path / "part.h5", stop=lambda: next(calls) == stop_at)
+    first = simulate(scenario, tmp_path / "part.h5", stop=lambda: next(calls) == 3)
     assert first.status == "interrupted"
     again = simulate(scenario, tmp_path / "part.h5", resume=True)
     assert again.status == "ok"

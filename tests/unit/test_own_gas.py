@@ -98,11 +98,11 @@ def test_starts(number):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("number", SCENES[:3:2])
-def test_runs(number):
+def test_runs():
     """A whole run by IDA, and by Radau in own words, both far sharper than the accuracy by which they are compared.
-    Any number: `python tests/benchmark/own_judgement.py --kind gas_waves`."""
-    drawn, _, scales, seal = scene_of(number)
+    Four more: test_promises.py::test_gas_that_stores; any number: `python tests/benchmark/own_judgement.py --kind
+    gas_waves`."""
+    drawn, _, scales, seal = scene_of(0)
     times = np.linspace(0.0, drawn.duration, 20, endpoint=False)
     columns, _ = by_steps(prepared(drawn.scene, drawn.duration, 1e-8, drawn.start), scales, times, "ida", 1e-9)
     begun = prepared(drawn.scene, drawn.duration, 1e-8, drawn.start)
