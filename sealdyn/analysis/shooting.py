@@ -239,7 +239,7 @@ class Shooter:
 class ForcedWave:
     """Steady states of a scene whose forcing turns at one `speed` (rad/s, 0 if it stands), as points of the frame that
     turns with it, where nothing moves: no time is integrated.  Members as of `Shooter`; its orbits have neither
-    monodromy nor multipliers, of which `multiplier` tells the largest.
+    monodromy nor multipliers, of which `multiplier` tells the largest.  **Valid** films that entrain what they store.
     Raises NotOneSpeed where the forcing needs more than one frame, a ring has no mass or sticks."""
 
     def __init__(self, scene, accuracy: float = 1e-8):

@@ -12,6 +12,7 @@ from scenes import run
 from scipy.optimize import brentq, fsolve
 from scipy.sparse.linalg import splu
 
+from sealdyn.analysis.shooting import ForcedWave
 from sealdyn.dynamics.condensation import FilmDerivatives
 from sealdyn.dynamics.interface import Interface, rest_state
 from sealdyn.dynamics.model import Model
@@ -301,6 +302,10 @@ def fixed_point(scene, runout):
 def test_runout_alone_ends_on_the_fixed_point_of_the_frame(turns, accuracy, error):
     scene = seal(rotor={"runout": 3e-5})
     tilt, gap = fixed_point(scene, 3e-5)
+    wave = ForcedWave(scene, accuracy)
+    point = wave.find()
+    assert wave.relative(point) == pytest.approx(tilt, abs=1e-13)
+    assert point.start[0] == pytest.approx(gap, abs=1e-15)
     done = run(scene, turns, accuracy=accuracy, method="ida", per_turn=8)
     found, gaps = relative(done, 3e-5)
     assert abs(tilt) > 1e-5 and abs(found[-1] - tilt) < error

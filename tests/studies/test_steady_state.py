@@ -4,12 +4,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from in_process import InProcess
 from oracles import tilt_roots
 
 import sealdyn
 from sealdyn.analysis.shooting import Shooter
 from sealdyn.archive import read_study
+from sealdyn.dynamics.model import Model
+from sealdyn.dynamics.modes import steady_extremes
 from sealdyn.scenario.reader import parse_scenario
+from sealdyn.studies import steady_state
 from sealdyn.studies._runner import run_study
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
@@ -148,3 +152,20 @@ def test_a_period_of_many_cycles_has_samples_of_each(tmp_path):
     found = run_study("steady-state", scenario, tmp_path / "s.h5", flags={"approach": []}, workers=1)
     cycles = 225.0 * found["period"]
     assert cycles > 20 and len(found["orbit"]["time"]) >= 24 * cycles
+
+
+def test_a_film_that_stores_turns_with_its_forcing():
+    """Of one forcing alone no run in time is needed; its tilt is the linear response at the forcing's frequency."""
+    values = ["stator.misalignment=0", "film.gas_reynolds.cells=[4, 24]"]
+    scenario = sealdyn.read_scenario(SCENARIOS / "gas_reynolds_reference.toml", values)
+    found = steady_state.run(scenario, steady_state.Settings(), InProcess())
+    model = Model(scenario.scene)
+    linear = model.linear_scene()
+    answers = [(h, linear.response(h)) for h in model.segment().harmonics()]
+    most, least, _ = steady_extremes(linear, answers, found["period"])
+    orbit = found["orbit"]
+    # Cells that stand, and cells that turn: as far apart as second order in 24 angles leaves them.
+    assert orbit["relative_misalignment"] == pytest.approx([most] * 256, rel=0.02)
+    assert least == pytest.approx(most) and 0.0 < found["h_min"]["value"] < model.clearance
+    assert orbit["relative_tilt_x"][-1] == pytest.approx(orbit["relative_tilt_x"][0])
+    assert found["stable"] is None and found.notes
