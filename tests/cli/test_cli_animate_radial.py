@@ -12,7 +12,7 @@ from PIL import Image
 
 from sealdyn.archive import FIELD_TIME, column, field
 from sealdyn.radial_seals.model import RadialModel, RadialRun
-from sealdyn.report.charts.followers import REACH, Around, panels
+from sealdyn.report.charts.followers import REACH, Around, moving_panels
 from sealdyn.report.charts.moving import moments, stage
 from sealdyn.report.charts.page import CONTACT, FILM
 from sealdyn.report.charts.record import Run
@@ -37,7 +37,7 @@ def staged(found, turns=2.0, per_turn=PER_TURN):
     """Figure, what moves it, and the progress of its pictures."""
     around = Around(found)
     at = around.nearest(moments(found, turns, per_turn, found.path))
-    return *stage(found, partial(panels, around), at), at
+    return *stage(found, partial(moving_panels, around), at), at
 
 
 @pytest.fixture(scope="module")

@@ -109,7 +109,7 @@ def animate(run: Run, out_path: Path, turns: float, per_turn: int, progress=None
         raise ArchiveError(f"{run.path}: holds no gap around the shaft over time")
     around = Around(run)
     at = around.nearest(moments(run, turns, per_turn, out_path))
-    return write(run, partial(_moving_panels, around), at, out_path, progress)
+    return write(run, partial(moving_panels, around), at, out_path, progress)
 
 
 class Around:
@@ -152,7 +152,7 @@ class Around:
         return float(max(shaft, *(np.abs(self.displacement(moment)).max() for moment in at)))
 
 
-def _moving_panels(around: Around, figure, run: Run, at: np.ndarray, top: float) -> list:
+def moving_panels(around: Around, figure, run: Run, at: np.ndarray, top: float) -> list:
     """Axes and what stands still in them; returns functions of the progress that move the rest."""
     section = figure.add_axes((0.036, 0.075, 0.46, top - 0.15))
     ax = {"line": figure.add_axes((0.565, 0.095, 0.41, 0.15))}
