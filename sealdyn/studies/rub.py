@@ -39,6 +39,7 @@ from . import Info
 ABOVE = (1.02, 1.1, 1.3)
 INFO = Info(
     timed=("rub_chaotic", 82),
+    asks="How does the seal rub?",
     warm="The temperature is that of the aligned film, whatever heat the rub makes.",
     units={
         "apart": "of clearance/outer radius", "h_min": "m", "impulse": "N*s", "wall_time": "s", "speed": "rad/s",
