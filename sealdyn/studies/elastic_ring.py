@@ -270,8 +270,8 @@ def release(scene: Scene, net: float, start: float, duration: float, steps: int)
             if after is not None:
                 return after
         if halvings == HALVINGS:
-            wave = abs(complex(at[1], at[2]))
-            raise ValueError(f"a step of {dt:.3g} s from a wave of {1e6 * wave:.4g} um has no solution")
+            wave = in_words("m", abs(complex(at[1], at[2])))
+            raise ValueError(f"a step of {dt:.3g} s from a wave of {wave} has no solution")
         x[:] = before
         return advanced(advanced(at, 0.5 * dt, x, halvings + 1), 0.5 * dt, x, halvings + 1)
 

@@ -40,7 +40,8 @@ def test_a_file_held_open_is_not_called_damaged(verb, held):
     }.get(verb, [verb, held])
     answer = sealdyn(*words, cwd=held.parent)
     assert answer.code == 2 and WITHOUT in answer.err and "damaged" not in answer.err
-    assert len(answer.err.splitlines()) == 1
+    # A busy machine is told of before the error.
+    assert len([line for line in answer.err.splitlines() if not line.startswith("making ready")]) == 1
 
 
 def test_without_locks_it_is_read(held):
