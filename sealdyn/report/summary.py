@@ -292,7 +292,8 @@ def _stability_lines(stability) -> Iterator[Line]:
         parts.append(("no critical speed up to", fastest, "speed"))
     else:
         looked = stability["thresholds"] is not None
-        parts.append(("no critical speed" if looked else "critical speed not looked for (study campbell)", None, ""))
+        unlooked = "critical speed not looked for (study campbell; of grooves coefficients)"
+        parts.append(("no critical speed" if looked else unlooked, None, ""))
     yield Line("stability", parts)
     if verdict == "neutral" and stability.get("growth_rate_uncertainty") is not None:
         yield Line("", [("growth rate", stability["growth_rate"], "growth_rate"),
