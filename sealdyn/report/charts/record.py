@@ -2,6 +2,7 @@
 which points of a study have an answer."""
 
 from functools import cached_property
+from itertools import takewhile
 
 import numpy as np
 
@@ -195,7 +196,9 @@ class Run:
     @property
     def question(self) -> str:
         """The scenario's opening question, or the opening comment, or the archive's name."""
-        return question_of(" ".join((self.info.get("question") or "").split())) or self.info.get("title", "")
+        comment = takewhile(lambda line: line.startswith("#"), self.info.get("scenario", "").splitlines())
+        words = " ".join(line.lstrip("# ").strip() for line in comment).strip()
+        return question_of(words) or self.info.get("title", "")
 
     @property
     def description(self) -> str:
