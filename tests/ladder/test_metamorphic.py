@@ -1,23 +1,26 @@
 """What a seal's motion does not depend on: where angles are counted from, which way the shaft turns, units of length,
-time and mass, which ring is called rotor, how often a run is sampled.
+time and mass, which ring is called rotor, how often a run is sampled, the order of keys.
 
 Random scenes of all families (tests/families.py), and some with waves, pads and contact; each is run twice, as it is
 and changed, and whatever the run amounts to must come out alike within its accuracy.
 """
 
 import math
+import tomllib
 from dataclasses import fields, is_dataclass, replace
 from functools import cache
 from typing import get_type_hints
 
 import numpy as np
 import pytest
+import tomlkit
 from families import gas, gas_reynolds, reynolds, wide
 from scenes import fmsr
 
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
-from sealdyn.scenario.reader import Scenario
+from sealdyn.scenario.reader import Scenario, parse_scenario
 from sealdyn.scenario.tables import Run
+from sealdyn.scenario.templates import shipped_paths
 from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import Shaft
 from sealdyn.scene.film import Pads, Reynolds
@@ -266,3 +269,19 @@ def test_rings_that_change_their_names():
     )  # fmt: skip
     duration = 3 * 2 * math.pi / 1000.0
     alike(scene, run(scene, duration), run(other, duration))
+
+
+def backwards(value):
+    """A table with its keys in the other order, and so those within it; lists stay."""
+    if isinstance(value, dict):
+        return {key: backwards(held) for key, held in reversed(value.items())}
+    return [backwards(entry) for entry in value] if isinstance(value, list) else value
+
+
+def test_the_order_of_keys_says_nothing():
+    for path in shipped_paths().values():
+        text = path.read_text()
+        turned = tomlkit.dumps(backwards(tomllib.loads(text)))
+        assert turned != text
+        one, other = (parse_scenario(words, path.name, path=path) for words in (text, turned))
+        assert other.scene == one.scene and other.run == one.run
