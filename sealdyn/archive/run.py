@@ -178,7 +178,8 @@ def opened_run(path: str | os.PathLike):
     with _open_file(Path(path)) as file:
         must_be_readable(file, path, FORMAT, "a sealdyn archive")
         try:
-            record, identity = _read_record(file), file_identity(file.filename)
+            # Of the file that is open: a run that ends meanwhile gives it another name.
+            record, identity = _read_record(file), file_identity(file.id.get_vfd_handle())
             if identity not in _looked_at:
                 if not is_whole(file):
                     raise ArchiveError(f"{path}: what it says was altered since it was written")
@@ -315,6 +316,9 @@ def open_run(path: str | os.PathLike):
 
     with opened_run(path) as (file, record):
         name = file.filename
+    if not os.path.exists(name):
+        # The run has ended meanwhile, and its file has another name.
+        return open_run(path)
     try:
         dataset = xarray.open_dataset(name, engine="h5netcdf", decode_times=False)
     except READING_ERRORS as error:

@@ -15,6 +15,7 @@ import pytest
 
 from sealdyn import archive
 from sealdyn.archive import ArchiveError, ArchiveWriter, Series, column, last_state, open_archive, read_info
+from sealdyn.archive import run as archive_run
 
 SCENARIO = '# Does it hold?  Ω = 1000\n[shaft]\nspeed = "1000 rad/s"\n'
 SERIES = {"h_min": Series("m", "smallest film thickness"), "count": Series("1", "row number")}
@@ -302,6 +303,21 @@ def test_reading_while_a_run_writes(tmp_path):
         stop.set()
         watcher.join()
     assert not errors and seen == sorted(seen) and len(set(seen)) > 3
+
+
+@pytest.mark.parametrize("read", [lambda path: read_info(path)["rows"], lambda path: open_archive(path).sizes["time"]])
+def test_a_run_that_ends_between_two_looks_is_read(tmp_path, monkeypatch, read):
+    path = tmp_path / "run.h5"
+    writer(path, interval=0.0).append(rows(0, 40), {"row": 40})
+    looked = archive_run._read_record
+
+    def ends(file):
+        if archive.partial_path(path).exists():
+            archive.partial_path(path).rename(path)
+        return looked(file)
+
+    monkeypatch.setattr(archive_run, "_read_record", ends)
+    assert read(path) == 40
 
 
 def test_bad_files_are_refused_in_one_line(tmp_path):
