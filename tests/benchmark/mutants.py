@@ -18,6 +18,8 @@ import sys
 import tempfile
 from pathlib import Path
 
+from sealdyn.kernel_cache import kernel_folder
+
 ROOT = Path(__file__).parents[2]
 SWAPS = {
     ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt, ast.Eq: ast.NotEq, ast.NotEq: ast.Eq,
@@ -68,7 +70,7 @@ def with_text(text: str, node, words: str) -> str:
 def first_failure(tree: Path) -> str:
     """The test that fails first in a copy of the tree, "" where none does."""
     call = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider"]
-    env = {**os.environ, "PYTHONPATH": str(tree)}
+    env = {**os.environ, "PYTHONPATH": str(tree), "NUMBA_CACHE_DIR": str(tree.with_name("kernels"))}
     try:
         done = subprocess.run(call, cwd=tree, env=env, capture_output=True, text=True, timeout=LONGEST)
     except subprocess.TimeoutExpired:
@@ -89,6 +91,8 @@ def main():
         tree = Path(folder) / "tree"
         leave = shutil.ignore_patterns(".git", "__pycache__", ".*_cache", "*.h5")
         shutil.copytree(ROOT, tree, ignore=leave)
+        # Mutants outside the kernels compile none.
+        shutil.copytree(kernel_folder(), Path(folder) / "kernels" / kernel_folder().name)
         for _ in range(count):
             path = draw.choices(files, [path.stat().st_size for path in files])[0]
             text = path.read_text()
