@@ -89,10 +89,12 @@ def main():
     files = sorted(path for room in rooms for path in (ROOT / "sealdyn" / room).rglob("*.py"))
     with tempfile.TemporaryDirectory() as folder:
         tree = Path(folder) / "tree"
-        leave = shutil.ignore_patterns(".git", "__pycache__", ".*_cache", "*.h5")
+        leave = shutil.ignore_patterns(".git", "__pycache__", ".*_cache")
         shutil.copytree(ROOT, tree, ignore=leave)
         # Mutants outside the kernels compile none.
         shutil.copytree(kernel_folder(), Path(folder) / "kernels" / kernel_folder().name)
+        if failed := first_failure(tree):
+            raise SystemExit(f"the tests fail as they are: {failed}")
         for _ in range(count):
             path = draw.choices(files, [path.stat().st_size for path in files])[0]
             text = path.read_text()
