@@ -299,7 +299,10 @@ class ForcedWave:
                 matrix[:, j] = (self._unbalance(x + moved) - self._unbalance(x - moved)) / (2 * STEP)
             if not (np.all(np.isfinite(matrix)) and np.all(np.isfinite(left))):
                 break
-            step = np.linalg.solve(matrix, left)
+            try:
+                step = np.linalg.solve(matrix, left)
+            except np.linalg.LinAlgError:
+                break
             x, before, last = x - step, last, float(np.max(np.abs(step)))
             # To rounding, of which a stiff film leaves more.
             if last < POINT or (last < 1e3 * POINT and last > 0.3 * before):
@@ -311,13 +314,8 @@ class ForcedWave:
         s = self.segment.gap_state(0.0, y)
         low, theta, radius = h_min(self.model.face, s)
         tilt = float(np.hypot(s[GX], s[GY]))
-        least = {
-            "value": low,
-            "time": 0.0,
-            "theta": theta,
-            "radius": radius,
-            "of_clearance": low / self.model.clearance,
-        }
+        least = {"value": low, "time": 0.0, "theta": theta, "radius": radius}
+        least["of_clearance"] = low / self.model.clearance
         extremes = {"h_min": least, "relative_misalignment": {"max": tilt, "min": tilt}, "collapsed": False}
         start, period = y[: self.model.unknowns.n_mechanical], RunState(self.model, 1.0).period()
         return Orbit(period, start, None, None, residual, 0, extremes)
