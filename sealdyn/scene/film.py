@@ -186,7 +186,7 @@ class Reynolds(Strict):
     cells_theta: int | None = None
     """Cells around the circle."""
     cavitation: Literal["mass-conserving", "none"] = "mass-conserving"
-    """Where the film tears at `cavitation_pressure`, with its liquid kept; or never."""
+    """Where the film tears at `cavitation_pressure`, with its liquid kept (over grooves: where aligned); or never."""
     roughness: Literal["christensen", "none"] = "christensen"
     """Whether the film flows between the asperities of [contact]."""
     columns: int = 8

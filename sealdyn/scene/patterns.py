@@ -165,7 +165,7 @@ def _beside_errors(scene) -> list[tuple[str, str, str]]:
     models = ("auto", "gas_reynolds" if gas else "reynolds")
     has = {
         "film.profile": film.profile, "film.pads": film.pads, "film.inertia": film.inertia, "film.heat": film.heat,
-        "film.cavitation_pressure": film.cavitation_pressure, "contact": scene.contact,
+        "contact": scene.contact,
         "stator.elastic": scene.stator.elastic, "stator.secondary_seal": scene.stator.secondary_seal,
         "rotor.secondary_seal": scene.rotor.secondary_seal, "stator.waviness": waves_of(scene),
     }  # fmt: skip

@@ -40,7 +40,7 @@ def flows_over_grooves(scene, clearance: float, carried: float) -> dict:
     leakage, torque = _leakage(scene, found), found.better(lambda one: one.torque)[0]
     arm = 0.5 * (film.inner_radius + film.outer_radius)
     return {"friction_coefficient": abs(torque) / (carried * arm) if carried > 0.0 else None,
-            "mass_flow": leakage * density_of(film), "leakage": leakage, "cavitated_fraction": 0.0,
+            "mass_flow": leakage * density_of(film), "leakage": leakage, "cavitated_fraction": found.fine.cavitated,
             "torque": torque, "stiffness": found.better(axial_stiffness)[0]}  # fmt: skip
 
 

@@ -19,6 +19,7 @@ from ..dynamics.warm_state import at_work, warming
 from ..numerics.piecewise_linear import points
 from ..quantities import in_words
 from ..scenario.errors import ScenarioError
+from ..scene.film import Coefficients
 from ..scene.scene import SceneError
 from ..scene.variants import frozen_at_start
 from ..units import Speed
@@ -111,7 +112,7 @@ def _held(scene, turned):
     try:
         return replace(free, film=replace(free.film, clearance=settle(free, opening_law(free))[0]))
     except SceneError:
-        if free.film.inertia:
+        if not (free.film.model == "linear" and isinstance(free.film.coefficients, Coefficients)):
             raise
         # Coefficients that know no other clearance.
         return replace(free, film=replace(free.film, clearance=own))

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from command import SCENARIOS
 from grooved_faces import AREA, R_I, R_O, ROWS
 
 from sealdyn import read_scenario, run_study
@@ -23,7 +24,8 @@ from sealdyn.scene.gas import GasReynolds
 from sealdyn.scene.patterns import Grooves
 from sealdyn.scene.rings import Rotor, Stator, Support
 from sealdyn.scene.scene import Closing, Scene, SceneError
-from sealdyn.scene.variants import counterpart
+from sealdyn.scene.variants import counterpart, frozen_at_start
+from sealdyn.studies import stribeck
 from sealdyn.studies._grooved import flows_over_grooves, modes, ring_of
 
 TEXT = """
@@ -105,7 +107,6 @@ def test_grooves_that_cannot_be(key, changes):
     [
         ("rotor.grooves", seal(rotor=[SPIRAL, SPIRAL])), ("rotor.grooves", seal(stator=[SPIRAL])),
         ("film.model", seal(replace(GAS, model="gas_dam"))), ("film.geometry", seal(replace(GAS, geometry="planar"))),
-        ("film.cavitation_pressure", seal(Film(R_I, R_O, 5e5, 1e5, 1e-3, clearance=3e-6, cavitation_pressure=0.0))),
     ],
 )  # fmt: skip
 def test_what_no_film_over_grooves_reckons_with(key, scene):
@@ -229,10 +230,13 @@ def test_two_grooves_have_an_equilibrium_but_no_one_stiffness_in_tilt():
 
 
 def test_what_no_run_over_grooves_takes():
-    """Fewer than three pitches, a liquid that would tear, columns without number."""
+    """Fewer than three pitches, a liquid that would tear or does, columns without number."""
     two = seal(rotor=[replace(SPIRAL, count=2)])
+    tears = seal(Film(R_I, R_O, 5e5, 1e5, 1e-3, clearance=3e-6, cavitation_pressure=0.0))
     torn = seal(Film(R_I, R_O, 1.5e5, 1e5, viscosity=1e-3, clearance=3e-6), [replace(SPIRAL, angle=-SPIRAL.angle)])
-    for scene, key in ((two, "rotor.grooves.0.count"), (torn, "film.clearance")):
+    for scene, key in (
+        (two, "rotor.grooves.0.count"), (torn, "film.clearance"), (tears, "film.cavitation_pressure"),
+    ):  # fmt: skip
         with pytest.raises(SceneError) as refused:
             Interface(scene, 1e-8)
         assert refused.value.key == key
@@ -306,3 +310,11 @@ def test_grooves_without_a_mesh_are_refused_as_such(closing):
     with pytest.raises(SceneError) as error:
         aligned_film(scene, settle(scene, opening_law(scene))[0])
     assert error.value.key == "rotor.grooves"
+
+
+def test_a_speed_at_which_nothing_holds_the_closing_force_has_no_state():
+    """Grooves that pump hardly: not the film of the clearance that another speed has."""
+    scene = frozen_at_start(read_scenario(SCENARIOS / "upstream_pumping.toml").scene)
+    assert stribeck._point(scene, 3.0).keys() == {"failed"}
+    found = stribeck._point(scene, 200.0)["unheated"]
+    assert 1e-6 < found["clearance"] < 3e-6 and found["load_share"] == pytest.approx(1.0)

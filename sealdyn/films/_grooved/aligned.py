@@ -4,7 +4,7 @@ Numbers are Richardson's of two meshes (`order` of balance.py), the finer of whi
 force over many clearances is read from values and slopes at clearances evenly spaced in their logarithm, cubic between
 them (Hermite), each computed when it is first needed.
 **Source** balance.py, motion.py; the slope of the force is the film's own axial stiffness at rest.
-**Valid** as they; a liquid's film is full: one whose pressure falls below zero would tear, and is refused.
+**Valid** as they; a liquid whose pressure falls below zero is refused unless it has a cavitation pressure.
 """
 
 import math
@@ -38,6 +38,7 @@ def pattern_of(one: Grooves) -> Spiral | Boxes:
 def conditions_of(scene, clearance: float) -> Conditions:
     """The film of a scene at its start, at a clearance (m)."""
     film, gas = coned(scene), gas_of(scene.film)
+    tears = film.reynolds is None or film.reynolds.cavitation != "none"
     slip = gas is not None and (film.gas_reynolds or GasReynolds()).slip
     return Conditions(
         clearance=clearance,
@@ -49,6 +50,7 @@ def conditions_of(scene, clearance: float) -> Conditions:
         coning=initially(film.coning),
         gas=gas is not None,
         slip=math.sqrt(0.5 * math.pi * gas.gas_constant * initially(film.temperature)) if slip else 0.0,
+        cavity=film.cavitation_pressure if tears else None,
     )
 
 
@@ -118,10 +120,10 @@ def aligned_film(scene, clearance: float, columns: int = COLUMNS) -> AlignedFilm
         raise SceneError("film", where, "a clearance of the size of a film's") from None
     frame = initially(scene.shaft.speed) if face == "rotor" else initially(scene.stator.speed)
     found = AlignedFilm(*pair, frame, grooves_of(scene)[1][0])
-    if film.gas is None and found.least_pressure < 0.0:
+    if film.gas is None and found.fine.void is None and found.least_pressure < 0.0:
         where = f"a film that would tear (least pressure {found.least_pressure:.3g} Pa)"
         raise SceneError(
-            f"{face}.grooves", where, "grooves over which the liquid keeps a pressure: films here are full"
+            f"{face}.grooves", where, "film.cavitation_pressure, or grooves over which the liquid keeps a pressure"
         )
     return found
 

@@ -9,9 +9,12 @@ A in (u, phi), is
     K A grad N_i . grad q  +  (c h^2/2) A grad N_i . grad p  -  w r^2 h mean(p) A dN_i/dphi,    K = h^3/(12 mu)
 
 with q = p^2/2, c = sqrt(pi R T/2) of first-order slip (a liquid: q = p, c = 0, mean(p) = 1), r and h at the middle.
+Where a liquid tears, nodes have the cavitation pressure and a void v in place of a pressure, p v = 0 above it, and what
+is carried over the part of a median cell's border that a triangle has is the liquid, 1 - v, of the cell it leaves.
 **Source** control volumes on linear triangles (Baliga & Patankar (1980), Num. Heat Transfer 3, 393): of a constant flux
-F as much as -A F . grad N_i leaves a median cell, exactly; the equation in ln r derived here.
-**Valid** isothermal, laminar, full film; h_t at a groove's edge jumps between triangles and needs no rule there.  The
+F as much as -A F . grad N_i leaves a median cell, exactly; cavities that keep their liquid: Elrod (1981), J. Lubr.
+Technol. 103, 350; the equation in ln r derived here.
+**Valid** isothermal, laminar; h_t at a groove's edge jumps between triangles and needs no rule there.  The
 sum over the corners of a triangle is 0, so that what enters at one edge of the face leaves at the other to rounding.
 """
 
@@ -30,7 +33,8 @@ from .mesh import Mesh, mesh_of, tips_of
 class Conditions:
     """What the film is at: `clearance` of the lands at the inner radius (m), `viscosity` (Pa s), pressures (Pa,
     absolute), `relative_speed` rotor less stator (rad/s), `face` that has the pattern ("rotor" or "stator"), `coning`
-    (rad), `gas` or liquid, `slip` = sqrt(pi R T/2) (m/s), 0 without."""
+    (rad), `gas` or liquid, `slip` = sqrt(pi R T/2) (m/s), 0 without, `cavity` the pressure (Pa) at which a liquid
+    tears, None where it never does."""
 
     clearance: float
     viscosity: float
@@ -41,6 +45,7 @@ class Conditions:
     coning: float = 0.0
     gas: bool = True
     slip: float = 0.0
+    cavity: float | None = None
 
     @property
     def entrainment(self) -> float:
@@ -141,19 +146,39 @@ class Film:
         """q."""
         return 0.5 * p * p if self.conditions.gas else p
 
-    def leaving(self, p: np.ndarray) -> np.ndarray:
-        """What leaves each corner's share of its cell through its triangle, (triangles, 3), at pressures (nodes,)."""
+    @cached_property
+    def passing(self) -> np.ndarray:
+        """What a full film carries over the border of the cells of corners a and a + 1, from a on, (triangles, 3)."""
+        middles = 0.5 * (self.mesh.corner_u + np.roll(self.mesh.corner_u, -1, 1))
+        return -(self.conditions.entrainment * self.r**2 * self.h)[:, None] * (self.u[:, None] - middles)
+
+    def dragged(self, void: np.ndarray | None) -> np.ndarray:
+        """Of a liquid, what of `leaving` is carried along; `void` (nodes,), None of a full film."""
+        if void is None:
+            return -self.carried * self.h[:, None]
+        filled = 1.0 - void[self.mesh.corners]
+        passed = self.passing * np.where(self.passing > 0.0, filled, np.roll(filled, -1, 1))
+        return passed - np.roll(passed, 1, 1)
+
+    def leaving(self, p: np.ndarray, void: np.ndarray | None = None) -> np.ndarray:
+        """What leaves each corner's share of its cell through its triangle, (triangles, 3), at pressures and voids
+        (nodes,)."""
         corners = self.mesh.corners
         out = self.viscous[:, None] * _times(self.diffusion, self.potential(p)[corners])
         if not self.conditions.gas:
-            return out - self.carried * self.h[:, None]
+            return out + self.dragged(void)
         if self.conditions.slip:
             out += self.slippery[:, None] * _times(self.diffusion, p[corners])
         return out - self.carried * (self.h * p[corners].mean(axis=1))[:, None]
 
-    def slopes(self, p: np.ndarray) -> np.ndarray:
-        """Derivatives of `leaving` by the pressures at the corners, (triangles, 3, 3)."""
+    def slopes(self, p: np.ndarray, torn: np.ndarray | None = None) -> np.ndarray:
+        """Derivatives of `leaving` by the pressures at the corners, (triangles, 3, 3), or by the voids of those that
+        are `torn` (nodes,)."""
         local = self.viscous[:, None, None] * self.diffusion
+        if torn is not None:
+            here, ahead = np.maximum(self.passing, 0.0), np.minimum(self.passing, 0.0)
+            by_void = -here[:, :, None] * np.eye(3) - ahead[:, :, None] * np.roll(np.eye(3), 1, 1)
+            return np.where(torn[self.mesh.corners][:, None, :], by_void - np.roll(by_void, 1, 1), local)
         if not self.conditions.gas:
             return local
         local = local * p[self.mesh.corners][:, None, :] + self.slippery[:, None, None] * self.diffusion
@@ -171,11 +196,26 @@ def _times(local: np.ndarray, values: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class Steady:
-    """The steady aligned film: pressures `p` (Pa) at the nodes, and Newton's `steps`."""
+    """The steady aligned film: pressures `p` (Pa) at the nodes, Newton's `steps`, and the share `void` (nodes,) of the
+    cells that is not filled, None of a film that cannot tear."""
 
     film: Film
     p: np.ndarray
     steps: int
+    void: np.ndarray | None = None
+
+    @cached_property
+    def torn(self) -> np.ndarray | None:
+        """Nodes at the cavitation pressure, (nodes,) bool."""
+        return None if self.void is None else self.void > 0.0
+
+    @cached_property
+    def cavitated(self) -> float:
+        """Share of the face that the cells of torn nodes have."""
+        if self.torn is None:
+            return 0.0
+        cells = self.film.gathered(np.repeat((self.film.mesh.area * self.film.r**2 / 3.0)[:, None], 3, 1))
+        return float(cells[self.torn].sum() / cells.sum())
 
     @cached_property
     def force(self) -> float:
@@ -186,7 +226,7 @@ class Steady:
     def flows(self) -> tuple[float, float]:
         """Flow outwards at the inner and at the outer edge: of a liquid m^3/s, of a gas p V in Pa m^3/s."""
         mesh = self.film.mesh
-        left = mesh.count * self.film.gathered(self.film.leaving(self.p))
+        left = mesh.count * self.film.gathered(self.film.leaving(self.p, self.void))
         return float(left[mesh.inner].sum()), float(-left[mesh.outer].sum())
 
     @cached_property
@@ -227,7 +267,7 @@ def steady(mesh: Mesh, conditions: Conditions, p: np.ndarray | None = None) -> S
     plain = ends[0] + share * (ends[1] - ends[0])
     plain = np.sqrt(2.0 * plain) if conditions.gas else plain
     start = plain if p is None else p
-    found = _newton(film, assembly, start)
+    found = (_newton if conditions.cavity is None else _torn)(film, assembly, start)
     if found is None:
         raise NoSteadyFilm("no steady film is found: what is dragged along outweighs what these columns let through")
     return Steady(film, *found)
@@ -249,6 +289,24 @@ def _newton(film: Film, assembly: Assembly, p: np.ndarray) -> tuple[np.ndarray, 
             return None
         if not gas or moved <= ARRIVED * p.max():
             return p, step
+    return None
+
+
+def _torn(film: Film, assembly: Assembly, p: np.ndarray) -> tuple[np.ndarray, int, np.ndarray] | None:
+    """Pressures (nodes,), steps, and voids (nodes,) of a liquid that may tear: which nodes do is guessed again until
+    no pressure is below that of cavitation and no void below 0.  None where the guesses do not settle."""
+    free, cavity = film.mesh.free, film.conditions.cavity
+    p, void, torn = p.copy(), np.zeros(len(p)), np.zeros(len(p), dtype=bool)
+    for step in range(1, MOST_STEPS + 1):
+        left = film.gathered(film.leaving(p, void))[free]
+        factors = splu(assembly.matrix(assembly.data(film.slopes(p, torn))), permc_spec=PERMUTATION)
+        change, was = np.zeros(len(p)), torn
+        change[free] = factors.solve(-left)
+        p, void = np.where(was, cavity, p + change), np.where(was, void + change, 0.0)
+        torn = np.where(was, void > 0.0, p < cavity)
+        if np.array_equal(torn, was):
+            return p, step, void
+        p, void = np.maximum(p, cavity), np.maximum(void, 0.0)
     return None
 
 

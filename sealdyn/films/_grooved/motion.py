@@ -40,8 +40,9 @@ class LinearFilm:
     def __init__(self, steady: Steady, shapes, weights: np.ndarray, turn: complex = 1.0):
         film, mesh, p = steady.film, steady.film.mesh, steady.p
         self.assembly, self.free = Assembly(mesh, turn), mesh.free
-        self.stiff = self.assembly.data(film.slopes(p))
-        self.weights = weights[:, mesh.free]
+        self.stiff = self.assembly.data(film.slopes(p, steady.torn))
+        # A void presses with nothing.
+        self.weights = (weights if steady.torn is None else np.where(steady.torn, 0.0, weights))[:, mesh.free]
         at_nodes, at_middles = shapes
         at_corners = at_nodes[mesh.corners] * self.assembly.ahead[:, :, None]
         # What a thicker film carries more, and what it holds more.
@@ -50,11 +51,16 @@ class LinearFilm:
         more = rate[:, None] * np.matmul(film.diffusion, film.potential(p)[corners][:, :, None])[:, :, 0]
         if film.conditions.slip:
             more += (2.0 * film.slippery / film.h)[:, None] * np.matmul(film.diffusion, p[corners][:, :, None])[:, :, 0]
-        more -= film.carried * (p[corners].mean(axis=1) if gas else np.ones(len(corners)))[:, None]
-        part = (mesh.area * film.r**2 / 3.0)[:, None] * (p[corners] if gas else np.ones(corners.shape))
+        if gas:
+            more -= film.carried * p[corners].mean(axis=1)[:, None]
+        else:
+            more += film.dragged(steady.void) / film.h[:, None]
+        filled = p if gas else np.ones(len(p)) if steady.void is None else 1.0 - steady.void
+        part = (mesh.area * film.r**2 / 3.0)[:, None] * filled[corners]
         self.by_film = self._gathered(mesh, more[:, :, None] * at_middles[:, None, :])
         self.by_rate = self._gathered(mesh, part[:, :, None] * at_corners)
-        self.held = film.held[mesh.free] if gas else np.zeros(len(mesh.free))
+        held = film.held if gas else np.zeros(len(p)) if steady.torn is None else np.where(steady.torn, -film.held, 0.0)
+        self.held = held[mesh.free]
 
     def _gathered(self, mesh, leaving: np.ndarray) -> np.ndarray:
         """Sums (free nodes, n) of what leaves the corners, (triangles, 3, n), each seen from its own sector."""
@@ -136,7 +142,8 @@ def circle_impedance(steady: Steady) -> LinearFilm:
     sector = steady.film
     mesh = whole_circle(sector.mesh)
     film = type(sector)(mesh, sector.conditions)
-    circle = Steady(film, np.tile(steady.p, sector.mesh.count), steady.steps)
+    void = None if steady.void is None else np.tile(steady.void, sector.mesh.count)
+    circle = Steady(film, np.tile(steady.p, sector.mesh.count), steady.steps, void)
     r, phi = np.exp(mesh.u), mesh.phi
     at_nodes = np.stack([np.ones(len(r)), r * np.sin(phi), -r * np.cos(phi)], axis=1)
     at_middles = np.stack([np.ones(len(film.r)), film.r * np.sin(film.phi), -film.r * np.cos(film.phi)], axis=1)
