@@ -57,7 +57,7 @@ def better(name, number):
 
 
 @pytest.mark.core
-@pytest.mark.parametrize("name", ROWS)
+@pytest.mark.parametrize("name", [name for name in ROWS if "tilt_Z_at_+0W" in ROWS[name]["expected"]])
 def test_stiffness_and_damping_of_the_rows(name):
     """Within the row's tolerance, or 0.4 %; of complex numbers that of their magnitude."""
     row = ROWS[name]

@@ -54,12 +54,21 @@ def test_validate_agrees(checks):
         "Green",
         "Lebeck, Teale & Pierce",
         "Ludwig & Allen",
+        "Muijderman",
+        "Own rows over grooves, another program",
         "Zuk",
     }
 
 
 def test_sources_are_the_files_there_are():
-    assert source_names() == ["green-1989", "lebeck-1979", "lebeck-1979-plateaus", "ludwig-allen", "zuk-1972"]
+    assert source_names() == [
+        "green-1989",
+        "grooved-faces",
+        "lebeck-1979",
+        "lebeck-1979-plateaus",
+        "ludwig-allen",
+        "zuk-1972",
+    ]
     for name in source_names():
         source = source_module(name)
         assert source.__doc__ and source.TITLE and source.COLUMNS
