@@ -1,5 +1,6 @@
 """Load support: how much of the closing force the film carries where the seal rests, over any key: pressure, width of
-the face, roughness, number and amplitude of waves; with friction, leakage, clearance and cavities."""
+the face, roughness, number and amplitude of waves, depth and angle of grooves; with friction, leakage, clearance,
+cavities, stiffness, and the stiffness over the leakage, by which gas seals are laid out."""
 
 from dataclasses import dataclass
 from functools import partial
@@ -16,7 +17,8 @@ from .equilibrium import find, resting, root_row
 from .sweep import along, quantity_along
 
 OUTPUTS = {"clearance": "m", "load_support": "1", "friction_coefficient": "1", "leakage": "m^3/s",
-           "cavitated_fraction": "1", "film_force": "N", "contact_force": "N"}  # fmt: skip
+           "cavitated_fraction": "1", "film_force": "N", "contact_force": "N", "stiffness": "N/m",
+           "stiffness_over_leakage": "N*s/m^4"}  # fmt: skip
 INFO = Info(
     timed=("lebeck_n3 --vary contact.roughness=0.1:0.4um:7", 3),
     asks="How much of the load does the film carry?",
@@ -26,7 +28,7 @@ INFO = Info(
     units={
         **OUTPUTS,
         # Of the balances within the rows.
-        "stiffness": "N/m", "torque": "N*m", "mass_flow": "kg/s", "held": "m", "rows": "1",
+        "torque": "N*m", "mass_flow": "kg/s", "held": "m", "rows": "1",
         **dict.fromkeys(("wear_rate", "standing", "travelling"), "m/s"),
     },
 )  # fmt: skip
@@ -37,6 +39,7 @@ DRAWN = (
     ("leakage", "leakage", "leakage", "blue"),
     ("clearance", "clearance", "clearance", "good"),
 )
+STIFFNESS = ("stiffness", "axial_stiffness", "axial stiffness", "film")
 
 
 @dataclass(frozen=True)
@@ -77,7 +80,7 @@ def balances(scenario, values) -> dict:
         found = find(scene)
     except (ScenarioError, SceneError) as error:
         return {"failed": str(error)}
-    roots = [root_row(scene, root, found) for root in found.roots]
+    roots = [_with_ratio(root_row(scene, root, found)) for root in found.roots]
     stable = [root for root in roots if root["stable"]]
     rest = stable[-1] if stable else dict.fromkeys(OUTPUTS)
     said = {"status": "ok"} if stable else {"status": "no balance", "message": "nothing holds the faces apart"}
@@ -86,12 +89,32 @@ def balances(scenario, values) -> dict:
     return {**said, **held, **{output: rest[output] for output in OUTPUTS}, "roots": roots}
 
 
+def _with_ratio(root: dict) -> dict:
+    """A balance with its stiffness over the leakage, None without either."""
+    leaks = root["leakage"] and root["stiffness"] is not None
+    return root | {"stiffness_over_leakage": root["stiffness"] / abs(root["leakage"]) if leaks else None}
+
+
+def _rubs(numbers) -> bool:
+    """Whether asperities carry anything anywhere."""
+    return any(root["contact_force"] for row in numbers["rows"] for root in row.get("roots", ()))
+
+
 def _found(numbers) -> str:
-    """From which to which share of the load the film carries."""
+    """From which to which share of the load the film carries; where it carries all, how stiff it is."""
     (key,), rows = numbers["axes"], numbers["rows"]
     known = [(row[key["key"]], row["load_support"]) for row in rows if row.get("load_support") is not None]
     if not known:
         return f"Nothing holds the faces apart at any value of {key['key']}."
+    if not _rubs(numbers):
+        stiff = [row for row in rows if row.get("stiffness_over_leakage") is not None]
+        if not stiff:
+            return "The film carries all of the closing force above the lower pressure."
+        most, best = (max(stiff, key=lambda row: row[name]) for name in ("stiffness", "stiffness_over_leakage"))
+        return (
+            f"The film carries the closing force alone, stiffest, {in_words('axial_stiffness', most['stiffness'])}, at "
+            f"{_value(key, most[key['key']])}, and stiffest for what leaks at {_value(key, best[key['key']])}."
+        )
     ends = (min(known, key=lambda pair: pair[1]), max(known, key=lambda pair: pair[1]))
     least, most = (f"{in_words('share', share)} at {_value(key, at)}" for at, share in ends)
     return f"Of the closing force above the lower pressure the film carries {least} to {most}."
@@ -103,12 +126,15 @@ def _value(key, value) -> str:
 
 
 def _table(numbers) -> Table:
-    """A row for every balance; the seal rides at the widest stable one."""
-    (key,) = numbers["axes"]
+    """A row for every balance; the seal rides at the widest stable one.  Contact and cavities where there are any."""
+    (key,), rubs = numbers["axes"], _rubs(numbers)
+    torn = any(root["cavitated_fraction"] for row in numbers["rows"] for root in row.get("roots", ()))
     names = (
-        ("clearance", "clearance", "clearance"), ("1", "stable", "stable"), ("share", "load support", "load_support"),
-        ("force", "by contact", "contact_force"), ("1", "friction coefficient", "friction_coefficient"),
-        ("leakage", "leakage", "leakage"), ("cavitated_fraction", "cavity", "cavitated_fraction"),
+        ("clearance", "clearance", "clearance"), ("1", "stable", "stable"),
+        *([("share", "load support", "load_support"), ("force", "by contact", "contact_force")] if rubs else []),
+        ("1", "friction coefficient", "friction_coefficient"), ("leakage", "leakage", "leakage"),
+        ("axial_stiffness", "stiffness", "stiffness"),
+        *([("cavitated_fraction", "cavity", "cavitated_fraction")] if torn else []),
     )  # fmt: skip
     rows = [
         [row[key["key"]], *(root.get(name) for *_, name in names), row.get("failed") or row.get("message")]
@@ -133,7 +159,7 @@ def _panels(numbers) -> list[Panel]:
     (key,), rows = numbers["axes"], numbers["rows"]
     x, places = along(key)
     panels = []
-    for output, quantity, words, colour in DRAWN:
+    for output, quantity, words, colour in (*(DRAWN[:1] if _rubs(numbers) else [STIFFNESS]), *DRAWN[1:]):
         rest = [row.get(output) for row in rows]
         if all(value is None for value in rest):
             panels.append(Panel(words, note="no balance at any value"))

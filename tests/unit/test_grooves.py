@@ -178,6 +178,12 @@ def test_the_studies_of_a_dry_gas_seal(scenario, tmp_path):
     # From the high to the low pressure, at normal conditions.
     leakage = -ROW["outflow"] * 273.15 / 300.0 / 101325.0
     assert root["leakage"] == pytest.approx(leakage, rel=2e-3)
+    over = run_study(
+        "load-support", scenario, tmp_path / "l.h5", flags={"vary": "rotor.grooves.0.depth=6 um"}, workers=1
+    )
+    (row,) = over["rows"]
+    assert row["stiffness_over_leakage"] == pytest.approx(root["stiffness"] / leakage, rel=4e-3)
+    assert row["stiffness"] == pytest.approx(root["stiffness"], rel=1e-9)
     flags = {"frequency": "10,1000,2000 rad/s"}
     found = run_study("coefficients", scenario, tmp_path / "c.h5", flags=flags, workers=1)
     k, d = (np.array(found["map"][name])[0] for name in ("stiffness", "damping"))
