@@ -4,8 +4,8 @@ with whatever vector unit they are compiled for.
     python tests/benchmark/equal_bits.py FILE
 
 The first call writes the digests of all scenes to FILE; every other one goes through the scenes backwards and compares.
-`.ci/run` calls it with an empty folder of kernels (NUMBA_CACHE_DIR), with the same folder again, and with kernels for
-the plainest processor (NUMBA_CPU_NAME=generic): with fast-math its sums were others.
+`.ci/run` calls it with kernels that are kept (NUMBA_CACHE_DIR), and with kernels just compiled for the plainest
+processor (NUMBA_CPU_NAME=generic): with fast-math its sums were others.
 """
 
 import hashlib

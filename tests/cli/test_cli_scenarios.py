@@ -14,6 +14,14 @@ from sealdyn import open_archive
 MARKS = dict.fromkeys(("hang_up", "runup_past_threshold"), pytest.mark.slow)
 MARKS |= dict.fromkeys(("fms_reference", "gas_dam_reference", "gas_reynolds_reference", "pump_seal"), pytest.mark.core)
 SHIPPED = [pytest.param(path, marks=MARKS.get(path.stem, ())) for path in sorted(SCENARIOS.glob("*.toml"))]
+# Fewer cells and turns where a run is dear.
+COARSER = {
+    "upstream_pumping": {"film.reynolds.columns": 4, "run.turns": 1},
+    "dry_gas_seal": {"film.gas_reynolds.columns": 4, "run.turns": 1, "run.accuracy": 0.05},
+    "lebeck_n6": {"film.reynolds.cells_r": 6, "film.reynolds.cells_theta": 270},
+    "lebeck_n3": {"film.reynolds.cells_r": 6, "film.reynolds.cells_theta": 135},
+    "lebeck_elastic": {"film.reynolds.cells_r": 6},
+}
 CONTRACT = {
     "model": {"film", "unknowns", "solver", "start", "reasons", "unused"},
     "h_min": {"value", "time", "theta", "radius", "of_clearance"},
@@ -34,7 +42,8 @@ def run(request, tmp_path_factory):
     import xarray
 
     folder = tmp_path_factory.mktemp(request.param.stem)
-    answer = sealdyn("run", request.param, *short(request.param), "--json", cwd=folder)
+    words = [*short(request.param), *settings(COARSER.get(request.param.stem, {}))]
+    answer = sealdyn("run", request.param, *words, "--json", cwd=folder)
     with xarray.open_dataset(folder / answer.found["archive"], engine="h5netcdf") as data:
         return folder, answer, data.load()
 
