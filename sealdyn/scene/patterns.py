@@ -80,7 +80,8 @@ class Grooves(Strict):
     """One row of equal grooves with sharp edges.
 
     Spiral: r = inner_radius exp(theta tan(angle)) along an edge, straight in (ln r, theta).  Tee: arms between the two
-    radii over `share` of the pitch, and a stem outwards from their middle, with radial sides."""
+    radii over `share` of the pitch, and a stem outwards from their middle, with radial sides.  Pad: a pocket between
+    the two radii over `share` of the pitch, with radial sides (Rayleigh steps, hydropads)."""
 
     count: int
     """Grooves to the circle."""
@@ -91,9 +92,9 @@ class Grooves(Strict):
     outer_radius: Radius
     """Where they end, or the arms of a tee."""
     share: float
-    """Share of the pitch that is groove, or arms."""
-    shape: Literal["spiral", "tee"] = "spiral"
-    """Spiral grooves, or arms with a stem."""
+    """Share of the pitch that is groove, arms or pad."""
+    shape: Literal["spiral", "tee", "pad"] = "spiral"
+    """Spiral grooves, arms with a stem, or pads (radial sides)."""
     angle: Angle | None = None
     """Of a spiral to the circle: positive where the groove's radius grows with theta, the sense of a positive shaft
     speed."""
@@ -147,9 +148,10 @@ def _shape_errors(one: Grooves, film) -> list[tuple[str, str, str]]:
             bad.append(("stem_outer_radius", f"{one.stem_outer_radius:g} m", expected))
         if not 0.0 < one.stem_share < one.share:
             bad.append(("stem_share", f"{one.stem_share:g}", f"above 0 and below share = {one.share:g}, the arms"))
-    if tee and one.angle is not None:
-        bad.append(("angle", "a value", 'nothing: the sides of shape = "tee" are radial'))
-    if not tee and not (one.angle is not None and 0.0 < abs(one.angle) < 0.5 * math.pi):
+    spiral = one.shape == "spiral"
+    if not spiral and one.angle is not None:
+        bad.append(("angle", "a value", f'nothing: the sides of shape = "{one.shape}" are radial'))
+    if spiral and not (one.angle is not None and 0.0 < abs(one.angle) < 0.5 * math.pi):
         found = "nothing" if one.angle is None else f"{one.angle:g} rad"
         expected = (
             "the groove's angle to the circle, between 0 and 90 deg, positive where its radius grows with theta, "

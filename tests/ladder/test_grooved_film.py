@@ -5,7 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from gas_faces import gap_state
+from gas_faces import gap_state, gas_film
+from gas_faces import steady as of_cells
 from grooved_faces import AREA, GAS, LIQUID, R_I, R_O, ROWS, SPIRAL, TEE, film, films_of, pattern_of
 
 from sealdyn.closed_form.narrow_groove import GroovedFace, narrow_groove_gas, narrow_groove_liquid
@@ -13,11 +14,13 @@ from sealdyn.faces.geometry import FLOW_INNER, FORCE, TORQUE
 from sealdyn.faces.pattern import Spiral
 from sealdyn.films import film_named
 from sealdyn.films._grooved.aligned import axial_stiffness
+from sealdyn.films._grooved.aligned import pattern_of as pattern_of_scene
 from sealdyn.films._grooved.balance import Conditions, NoSteadyFilm, extrapolated, steady, steady_pair
 from sealdyn.films._grooved.mesh import mesh_of
 from sealdyn.films._grooved.motion import Motion, circle_impedance
-from sealdyn.scene.film import Film
+from sealdyn.scene.film import Film, Pads
 from sealdyn.scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE, GasReynolds
+from sealdyn.scene.patterns import Grooves
 
 PLAIN = replace(SPIRAL, depth=0.0)
 FACES = "inner_radius", "outer_radius"
@@ -89,6 +92,28 @@ def test_a_pattern_without_depth_is_the_gas_film_of_plain_faces():
     assert found.force == pytest.approx(s[FORCE], rel=3e-4)
     assert normal * found.flows[0] == pytest.approx(s[FLOW_INNER], rel=3e-3)
     assert found.torque == pytest.approx(s[TORQUE], rel=1e-3)
+
+
+@pytest.mark.slow
+def test_pads_with_sharp_edges_are_those_with_narrow_flanks():
+    """The cells over radius and angle see the flanks, which end at 222.6 N as they get narrower, in either face."""
+    share = 0.5 * 6 / (2.0 * math.pi)
+    pads = pattern_of_scene(Grooves(6, 8e-6, 0.034, 0.038, share, "pad"))
+    smooth = Pads(6, 8e-6, 0.5, 0.034, 0.038, 5e-5)
+    table = gas_film((48, 384), inner_pressure=1.5e5, outer_pressure=1e5, clearance=5e-6, pads=[smooth])
+    s = gap_state(table, 2000.0)
+    of_cells(film_named("gas_reynolds").parameters(table, 5e-6), s)
+    found = []
+    for face in ("stator", "rotor"):
+        conditions = Conditions(5e-6, 1.8e-5, 1.5e5, 1e5, 2000.0, face)
+        coarse, fine, power = steady_pair(pads, 0.032, 0.040, conditions)
+        numbers = (lambda one: one.force, lambda one: one.torque, lambda one: one.flows[0])
+        found.append([extrapolated(number(coarse), number(fine), power)[0] for number in numbers])
+    assert found[0] == pytest.approx(found[1], rel=1e-4)
+    assert found[0][0] == pytest.approx(s[FORCE], rel=4e-3)
+    assert found[0][1] == pytest.approx(s[TORQUE], rel=2e-2)
+    normal = NORMAL_TEMPERATURE / (300.0 * NORMAL_PRESSURE)
+    assert normal * found[0][2] == pytest.approx(s[FLOW_INNER], rel=6e-2)
 
 
 @pytest.mark.parametrize("conditions", [GAS, LIQUID])

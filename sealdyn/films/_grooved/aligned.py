@@ -31,6 +31,8 @@ def pattern_of(one: Grooves) -> Spiral | Boxes:
     if one.shape == "spiral":
         return Spiral(one.count, one.inner_radius, one.outer_radius, one.angle, one.share, one.depth, one.phase)
     arms = Box(one.inner_radius, one.outer_radius, one.share)
+    if one.shape == "pad":
+        return Boxes(one.count, one.depth, (arms,), one.phase)
     stem = Box(one.outer_radius, one.stem_outer_radius, one.stem_share)
     return tee(one.count, one.depth, arms, stem, one.phase)
 
