@@ -292,7 +292,7 @@ def _stability_lines(stability) -> Iterator[Line]:
         parts.append(("no critical speed up to", fastest, "speed"))
     else:
         looked = stability["thresholds"] is not None
-        unlooked = "critical speed not looked for (study campbell; of grooves coefficients)"
+        unlooked = "critical speed not looked for (study campbell)"
         parts.append(("no critical speed" if looked else unlooked, None, ""))
     yield Line("stability", parts)
     if verdict == "neutral" and stability.get("growth_rate_uncertainty") is not None:

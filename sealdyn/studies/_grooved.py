@@ -2,13 +2,16 @@
 roots of the ring that floats, in the inertial frame."""
 
 import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
 from ..answers import Answer, Axis, Level, Panel, Series, Table
 from ..dynamics.equilibrium import settle
 from ..dynamics.interface import opening_law
-from ..films._grooved.aligned import AlignedFilm, aligned_film, axial_stiffness
+from ..films._grooved.aligned import MANY, AlignedFilm, aligned_film, axial_stiffness
 from ..films._grooved.motion import (
     Motion,
     Ring,
@@ -24,10 +27,15 @@ from ..quantities import in_words
 from ..scenario.settings import values_in_si
 from ..scene.film import coned
 from ..scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE, density_of
-from ..scene.scene import SceneError
+from ..scene.scene import Closing, Scene, SceneError
 from ..scene.variants import frozen_at_start
 
 ERRORS = ("film_force", "leakage", "torque", "axial_stiffness", "tilt_stiffness")
+# Speeds between two of which one has more roots that grow.
+CLOSER = 5
+# Relative change of a frequency that is near enough to begin from.
+NEXT_TO = 1e-2
+MOTIONS = ("axial", "tilt_forward", "tilt_backward")
 # Frequencies without any asked, in shaft speeds.
 FREQUENCIES = np.concatenate([[0.01], np.linspace(0.5, 30.0, 60)])
 
@@ -181,8 +189,71 @@ def _root(law, inertia: float, whirl: float) -> complex:
     for _ in range(30):
         # law + inertia w^2 is the stiffness that the motion meets.
         stiffness = (law(1j * whirl * w) + inertia * w * w).real
-        w = math.sqrt(max(stiffness, 1e-3 * abs(stiffness)) / inertia)
+        before, w = w, math.sqrt(max(stiffness, 1e-3 * abs(stiffness)) / inertia)
+        if abs(w - before) < NEXT_TO * w:
+            break
     return root_near(law, complex(0.0, whirl * w))
+
+
+@dataclass(frozen=True)
+class RootsOverSpeed:
+    """Roots (1/s) of the ring of a scene at shaft speeds, under the closing force that it has at its own one."""
+
+    scene: Scene
+
+    def __post_init__(self):
+        if ring_of(self.scene) is None:
+            raise SceneError("rotor.support", "two rings that float over grooves, or one without inertia", "one ring")
+
+    @cached_property
+    def free(self) -> Scene:
+        """The scene whose closing force is given and whose clearance follows."""
+        law = settle(self.scene, opening_law(self.scene))[1]
+        closing = Closing(balance_ratio=law.balance_ratio, spring_force=law.spring)
+        return replace(self.scene, closing=closing, film=replace(self.scene.film, clearance=None))
+
+    def __call__(self, speed: float) -> dict:
+        """`clearance` (m), roots [real, imaginary] by the names of MOTIONS, None of one that there is not, and how many
+        roots of film and ring are `growing`, counted."""
+        turned = frozen_at_start(self.free, speed=speed)
+        clearance = settle(turned, opening_law(turned))[0]
+        found = modes(turned, aligned_film(turned, clearance, MANY))
+        growing = found["unstable_axial"] + found["unstable_tilt"]
+        return {"clearance": clearance, "growing": growing, **{name: found[name] for name in MOTIONS}}
+
+
+def roots_over_speed(scene, speeds, tools) -> tuple[list[dict], dict, list[str]]:
+    """Rows of RootsOverSpeed that have a film, with their `speed` (rad/s); roots (complex, a row each) of the motions
+    that are whirls or oscillations of their own at all of these; and what is to be said of the others."""
+    roots = RootsOverSpeed(scene)
+    # Once, not in each process.
+    _ = roots.free
+    held = _rows(roots, speeds, tools, "roots")
+    # Closer where roots begin to grow or cease to.
+    between = [np.linspace(a["speed"], b["speed"], CLOSER + 2)[1:-1] for a, b in pairwise(held)
+               if a["growing"] != b["growing"]]  # fmt: skip
+    if between:
+        held = sorted([*held, *_rows(roots, np.concatenate(between), tools, "closer")], key=lambda row: row["speed"])
+    if not held:
+        raise SceneError(
+            "shaft.speed", f"no film over grooves from {speeds[0]:g} to {speeds[-1]:g} rad/s", "other speeds"
+        )
+    known = {name: [row[name] for row in held] for name in MOTIONS}
+    notes = []
+    lost = [name.replace("_", " ") for name, values in known.items() if None in values]
+    if lost:
+        notes.append(f"Not an oscillation of its own at all speeds, and left out: {', '.join(lost)}.")
+    growing = [row["speed"] for row in held if row["growing"]]
+    if growing:
+        notes.append(f"Roots that grow, counted around the right half plane, at {len(growing)} of {len(held)} speeds, "
+                     f"the lowest {in_words('speed', growing[0])}.")  # fmt: skip
+    return held, {name: np.array(values) @ [1.0, 1j] for name, values in known.items() if None not in values}, notes
+
+
+def _rows(roots, speeds, tools, words: str) -> list[dict]:
+    """Rows of the speeds (rad/s) that have a film, with them."""
+    found = tools.map(roots, [float(w) for w in speeds], words)
+    return [{"speed": float(w), **row} for w, row in zip(speeds, found, strict=True) if "failed" not in row]
 
 
 def tracking(scene, found: AlignedFilm, clearance: float) -> dict | None:

@@ -209,7 +209,9 @@ def _refuse_seal(name: str, info: Info, scene):
     if _is_radial(scene):
         return
     if (face := grooves_of(scene)[0]) and not info.grooved:
-        served = "none, or one of the studies equilibrium, load-support, stribeck, coefficients and sweep, or a run"
+        served = (
+            "none, or one of the studies campbell, coefficients, equilibrium, load-support, stribeck, sweep, or a run"
+        )
         raise SceneError(f"{face}.grooves", "grooves in a face", f"{served}: {name} does not reckon with grooves")
     if info.wavy:
         return

@@ -11,6 +11,7 @@ from scipy.optimize import brentq, linear_sum_assignment
 from ..answers import CYCLE, Answer, Axis, Level, Panel, Series, Table
 from ..dynamics.model import Model
 from ..quantities import in_words, reading_in
+from ..scene.patterns import grooves_of
 from ..scene.variants import frozen_at_start
 from ..simulation.stability import held_speeds
 from ..units import Speed
@@ -21,12 +22,15 @@ INFO = Info(
     asks="At which frequencies does the seal whirl?",
     refuses=("secondary-seal",),
     wavy=True,
+    grooved=True,
     units={
         **dict.fromkeys(("speed", "frequency", "signed_frequency"), "rad/s"), "growth_rate": "1/s",
-        **dict.fromkeys(("log_decrement", "lines", "line", "mode", "whirl_ratio"), "1"),
+        **dict.fromkeys(("log_decrement", "lines", "line", "mode", "whirl_ratio", "growing"), "1"),
+        "clearance": "m",
     },
     along={"modes": ("speed",)},
 )  # fmt: skip
+POINTS, POINTS_OVER_GROOVES = 241, 25
 # Shapes of neighbouring speeds that resemble each other less than this ask for a speed between them.
 ALIKE, HALVINGS = 0.97, 7
 NOT_OSCILLATING = 1e-9
@@ -45,8 +49,8 @@ class Settings:
     """Lowest speed."""
     speed_to: Speed | None = None
     """Highest speed; without it six times the scenario's, no more than a film holds."""
-    points: int = 241
-    """Number of speeds."""
+    points: int | None = None
+    """Number of speeds (241; over grooves 25)."""
     unit: Literal["rpm", "rad/s"] = "rpm"
     """Of the figure's axes."""
     lines: tuple[float, ...] | float = ()
@@ -56,11 +60,13 @@ class Settings:
 def run(scenario, settings, tools) -> Answer:
     """Modes over speed, where they meet the order lines, and where they turn or lose their damping."""
     scene = frozen_at_start(scenario.scene)
+    if grooves_of(scene)[1]:
+        return _over_grooves(scene, settings, tools)
     model, own = Model(scene), abs(scene.shaft.speed)
     top = settings.speed_to
     if top is None:
         _, top = held_speeds(model, model.start, 1e-3 * own, 6 * own or 6000.0)
-    speeds = np.linspace(settings.speed_from, top, max(3, settings.points))
+    speeds = np.linspace(settings.speed_from, top, max(3, settings.points or POINTS))
 
     def pencil(w):
         return model.linear_scene(speed=float(w)).pencil()
@@ -71,7 +77,30 @@ def run(scenario, settings, tools) -> Answer:
     tools.say(1.0)
     count = len(begin.mass)
     modes = described(values, shapes[:, :, :count], speeds)
-    more = [settings.lines] if isinstance(settings.lines, int | float) else list(settings.lines)
+    lost = model.unknowns.faces_tilt and begin.rest is None
+    notes = ["The modes are of aligned faces: no tilt was found in which the rings rest."] if lost else []
+    return _answer(scene, settings, speeds, modes, notes)
+
+
+def _over_grooves(scene, settings, tools) -> Answer:
+    """Roots of the ring on the film of one pitch, at fewer speeds."""
+    # Sparse matrices are loaded for grooves only.
+    from ._grooved import roots_over_speed
+
+    top = settings.speed_to if settings.speed_to is not None else 2.0 * abs(scene.shaft.speed)
+    points = max(3, settings.points or POINTS_OVER_GROOVES)
+    # At rest grooves do not pump.
+    speeds = np.linspace(settings.speed_from or top / points, top, points)
+    rows, roots, notes = roots_over_speed(scene, speeds, tools)
+    modes = [_mode(name.partition("_")[0], row) for name, row in roots.items()]
+    more = {name: [row[name] for row in rows] for name in ("clearance", "growing")}
+    return _answer(scene, settings, np.array([row["speed"] for row in rows]), modes, notes, more)
+
+
+def _answer(scene, settings, speeds, modes, notes, rest=None) -> Answer:
+    """What `modes` (described) over `speeds` say; `rest` of the numbers."""
+    own, more = abs(scene.shaft.speed), settings.lines
+    more = [more] if isinstance(more, int | float) else list(more)
     lines = sorted({1.0, 0.5, *map(float, more)}, reverse=True)
     numbers = {
         "speed": speeds.tolist(),
@@ -83,10 +112,9 @@ def run(scenario, settings, tools) -> Answer:
         "thresholds": thresholds(modes, speeds),
         "stator_speed": scene.stator.speed,
         "stator_crossings": stator_crossings(modes, speeds, scene.stator.speed),
+        **(rest or {}),
     }
     with reading_in({"rad/s": settings.unit}):
-        lost = model.unknowns.faces_tilt and begin.rest is None
-        notes = ["The modes are of aligned faces: no tilt was found in which the rings rest."] if lost else []
         return Answer(numbers, _found(numbers), [_table(numbers)], _panels(numbers), notes)
 
 
@@ -334,7 +362,9 @@ def _panels(numbers) -> list[Panel]:
         if any(value is not None for value in values):
             decrements.append(Series("line", speed, values, label=f"mode {k + 1}", style=colour))
     highest = max((max(mode["frequency"]) for mode in modes), default=0.0)
-    top = min(1.08 * highest, 1.25 * speed[-1]) or None
+    # Where all whirl far faster than the shaft turns they are shown, not where they might meet its lines.
+    lowest = min((min(mode["frequency"]) for mode in modes if max(mode["frequency"])), default=0.0)
+    top = (1.08 * highest if lowest > 1.25 * speed[-1] else min(1.08 * highest, 1.25 * speed[-1])) or None
     for line in numbers["lines"]:
         frequencies.append(Series("line", [speed[0], speed[-1]], [line * speed[0], line * speed[-1]],
                                   label=f"{line:g}x shaft speed", style="grey thin dotted"))  # fmt: skip

@@ -26,7 +26,7 @@ from sealdyn.scene.rings import Rotor, Stator, Support
 from sealdyn.scene.scene import Closing, Scene, SceneError
 from sealdyn.scene.variants import counterpart, frozen_at_start
 from sealdyn.studies import stribeck
-from sealdyn.studies._grooved import flows_over_grooves, modes, ring_of
+from sealdyn.studies._grooved import RootsOverSpeed, flows_over_grooves, modes, ring_of
 
 TEXT = """
 [shaft]
@@ -259,8 +259,37 @@ def test_which_cells_are_used():
 
 def test_a_study_that_does_not_reckon_with_grooves_says_so(scenario, tmp_path):
     with pytest.raises(SceneError) as refused:
-        run_study("campbell", scenario, tmp_path / "c.h5")
+        run_study("stability", scenario, tmp_path / "c.h5")
     assert refused.value.key == "rotor.grooves"
+
+
+HEAVY = {"stator.transverse_inertia": 5e-2, "rotor.grooves.0.count": 5, "film.clearance": 4e-6}
+
+
+def test_campbell_over_grooves_finds_where_a_whirl_loses_its_damping(tmp_path):
+    """Where the count of growing roots changes; there K - I w^2 and the damping of film and support are zero."""
+    heavy = read_scenario(SCENARIOS / "upstream_pumping.toml").with_(HEAVY)
+    flags = {"points": 4, "speed_from": 700.0, "speed_to": 1300.0}
+    found = run_study("campbell", heavy, tmp_path / "c.h5", flags=flags, workers=1)
+    (point,) = [point for point in found["thresholds"] if point["what"] == "damping"]
+    # The count is of the finer mesh, the roots extrapolated.
+    far = [(w, n) for w, n in zip(found["speed"], found["growing"], strict=True) if abs(w / point["speed"] - 1) > 3e-2]
+    assert len(far) > 4 and all(growing == int(speed > point["speed"]) for speed, growing in far)
+    roots = RootsOverSpeed(frozen_at_start(heavy.scene))
+    assert roots(point["speed"])["tilt_forward"][0] == pytest.approx(0.0, abs=0.1)
+    # The closing force is kept, not the clearance.
+    assert np.all(np.diff(found["clearance"]) > 0.0)
+    whirl = 1j * point["whirl_ratio"] * point["speed"]
+    turned = frozen_at_start(roots.free, speed=point["speed"])
+    clearance = settle(turned, opening_law(turned))[0]
+    law = tilt_law(aligned_film(turned, clearance, 8).motions[1], ring_of(turned))
+    assert abs(law(whirl)) < 2e-2 * abs(law(0.0))
+
+
+def test_no_roots_over_speed_of_two_rings():
+    with pytest.raises(SceneError) as refused:
+        RootsOverSpeed(seal(floats="stator rotor"))
+    assert refused.value.key == "rotor.support"
 
 
 def test_the_ring_that_floats_spins_with_its_own_speed():

@@ -111,12 +111,14 @@ def meshes_of(scene, columns: int):
         raise SceneError(f"{face}.grooves", str(error), "fewer grooves, or steeper ones") from None
 
 
-def aligned_film(scene, clearance: float, columns: int = COLUMNS) -> AlignedFilm:
-    """The film of a scene with grooves at a clearance (m), so many columns to a pitch of the coarser mesh.  Raises
-    SceneError where there is none, or where a liquid would tear."""
+def aligned_film(scene, clearance: float, columns: int = COLUMNS, near: AlignedFilm | None = None) -> AlignedFilm:
+    """The film of a scene with grooves at a clearance (m), so many columns to a pitch of the coarser mesh; one `near`
+    by, on the same meshes, is where it is looked for first.  Raises SceneError where there is none, or where a liquid
+    would tear."""
     face, film, meshes = grooves_of(scene)[0], scene.film, meshes_of(scene, columns)
+    known = (None, None) if near is None else (near.coarse.p, near.fine.p)
     try:
-        pair = [steady(mesh, conditions_of(scene, clearance)) for mesh in meshes]
+        pair = [steady(mesh, conditions_of(scene, clearance), p) for mesh, p in zip(meshes, known, strict=True)]
     except (NoSteadyFilm, ValueError) as error:
         where = f"a clearance of {clearance:.4g} m over grooves: {error}"
         raise SceneError("film", where, "a clearance of the size of a film's") from None
@@ -175,13 +177,16 @@ def extrapolated_force(scene) -> OpeningForce:
     """That of a scene, extrapolated from two meshes.  Raises SceneError for grooves that have no mesh: no clearance
     makes good for it."""
     meshes_of(scene, MANY)
+    found = {}
 
     def with_slope(clearance, inner, outer):
         table = replace(scene.film, inner_pressure=inner, outer_pressure=outer)
+        near = min(found, key=lambda other: abs(math.log(other / clearance)), default=None)
         try:
-            film = aligned_film(replace(scene, film=table), clearance, MANY)
+            film = aligned_film(replace(scene, film=table), clearance, MANY, found.get(near))
         except SceneError:
             return math.nan, math.nan
+        found[clearance] = film
         return film.better(lambda one: one.force)[0], -film.better(axial_stiffness)[0] * clearance
 
     return OpeningForce(with_slope)

@@ -266,8 +266,9 @@ def steady(mesh: Mesh, conditions: Conditions, p: np.ndarray | None = None) -> S
     ends = [film.potential(np.asarray(edge)) for edge in (conditions.inner_pressure, conditions.outer_pressure)]
     plain = ends[0] + share * (ends[1] - ends[0])
     plain = np.sqrt(2.0 * plain) if conditions.gas else plain
-    start = plain if p is None else p
-    found = (_newton if conditions.cavity is None else _torn)(film, assembly, start)
+    solve = _newton if conditions.cavity is None else _torn
+    found = None if p is None else solve(film, assembly, np.where(mesh.inner | mesh.outer, plain, p))
+    found = found or solve(film, assembly, plain)
     if found is None:
         raise NoSteadyFilm("no steady film is found: what is dragged along outweighs what these columns let through")
     return Steady(film, *found)
