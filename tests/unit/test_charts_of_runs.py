@@ -312,3 +312,24 @@ def test_a_sketch_tells_what_it_does_not_draw(tmp_path):
     # Thickest at the inner radius, and level from 34 mm on.
     gap = ax.patches[0].get_xy()
     assert gap[gap[:, 1] <= 32.0][:, 0].max() > 2 * gap[gap[:, 1] > 35][:, 0].max()
+
+
+GROOVES = {"count": 6, "depth": 6e-6, "inner_radius": 0.036, "outer_radius": 0.04, "share": 0.5, "shape": "spiral",
+           "angle": 0.3, "stem_outer_radius": None, "stem_share": None, "phase": 0.0}  # fmt: skip
+
+
+@pytest.mark.parametrize("angle, pumped", [(0.3, "inwards"), (-0.3, "outwards")])
+def test_grooves_are_drawn_from_the_front(angle, pumped, tmp_path):
+    """Where the face is deep, in the sense in which theta rises, and which way they pump on a rotor."""
+    archive = write(tmp_path / "seal.h5", drop(whirling(samples=40), "tilt"), shaft={"speed": 500.0}, stator={},
+                    rotor={"grooves": [GROOVES | {"angle": angle}]})  # fmt: skip
+    _, ax = drawn(sketch, archive, tmp_path / "chart.png").axes
+    assert pumped in ax.get_xlabel() and "6 spiral grooves" in ax.get_xlabel()
+    x, y = np.moveaxis(ax.collections[0].get_coordinates(), -1, 0)
+    r, theta = np.hypot(x, y)[:-1, :-1], np.arctan2(y, x)[:-1, :-1]
+    deep = ~np.ma.getmaskarray(ax.collections[0].get_array()).reshape(r.shape)
+    assert r[deep].min() == pytest.approx(36.0, abs=0.1) and deep[r > 36.0].mean() == pytest.approx(0.5, abs=0.02)
+    # The middle of the groove at the angle 0 of its inner radius goes on to ln(r/36)/tan(angle).
+    middle = np.log(39.0 / 36.0) / np.tan(angle)
+    near = (np.abs(r - 39.0) < 0.05) & (np.abs(np.angle(np.exp(1j * (theta - middle)))) < 0.1)
+    assert near.any() and deep[near].all()

@@ -1,9 +1,14 @@
-"""The seal in half section: radii to scale, lengths along the shaft as drawn by hand, cone and clearance enlarged."""
+"""The seal in half section: radii to scale, lengths along the shaft as drawn by hand, cone and clearance enlarged; a
+face with grooves also from the front, to scale."""
 
 import numpy as np
-from matplotlib.patches import Polygon, Rectangle
+from matplotlib.colors import ListedColormap
+from matplotlib.patches import Annulus, Polygon, Rectangle
 
+from ...faces.pattern import pumps
+from ...films._grooved.aligned import pattern_of
 from ...quantities import in_words, printed, shown_in
+from ...scene.patterns import Grooves
 from .page import BLACK, CONTACT, GREY, PALE, PAPER, RING, SKY, look, save, sheet, written
 from .record import MM, Run
 
@@ -13,14 +18,55 @@ LONG, CLEARANCE, CONE, ROOM, COLLAR = 1.2, 0.08, 0.14, 1.0, 0.45
 COIL = np.array([0, 0, 1, -1, 1, -1, 1, -1, 1, -1, 1, 0, 0])
 # Radii at which the face is drawn.
 RADII = 61
+# Radii of a face from the front, and angles to a pitch; what its grooves are called.
+ACROSS, AROUND = 121, 90
+NAMES = {"spiral": "spiral grooves", "tee": "T-grooves", "pad": "pads"}
 
 
 @look()
 def draw(archive_path, out_path):
     """The figure alone."""
-    figure = sheet(6.0, 4.4)
-    panel(figure.add_axes((0.13, 0.16, 0.85, 0.75)), Run(archive_path))
+    run = Run(archive_path)
+    grooved = [(ring, row) for ring in RING for row in (run.resolved.get(ring) or {}).get("grooves") or []]
+    figure = sheet(9.6 if grooved else 6.0, 4.4)
+    panel(figure.add_axes((0.08, 0.16, 0.53, 0.75) if grooved else (0.13, 0.16, 0.85, 0.75)), run)
+    for ring, row in grooved:
+        _front(figure.add_axes((0.63, 0.16, 0.36, 0.75)), run, ring, row)
     return save(figure, out_path)
+
+
+def _front(ax, run: Run, ring: str, row: dict) -> None:
+    """The face of a ring with its grooves, seen so that theta rises counter-clockwise; which way it turns past the
+    other one."""
+    pattern = pattern_of(Grooves(**row))
+    inner, outer = run.film("inner_radius"), run.film("outer_radius")
+    r = np.linspace(inner, outer, ACROSS)
+    theta = np.linspace(0.0, 2.0 * np.pi, AROUND * pattern.count + 1)
+    deep = pattern.depth_at(r[:, None], theta) > 0.0
+    x, y = (MM * r[:, None] * turned for turned in (np.cos(theta), np.sin(theta)))
+    # A face for the lands, on which only what is deep is drawn.
+    ax.add_patch(Annulus((0, 0), MM * outer, MM * (outer - inner), fc=RING[ring], alpha=0.75, ec=BLACK))
+    ax.pcolormesh(x, y, np.where(deep[:-1, :-1], 1.0, np.nan), cmap=ListedColormap([GREY]), rasterized=True)
+    turning = _at_first(run, ring)
+    if past := turning - _at_first(run, "stator" if ring == "rotor" else "rotor"):
+        ends = np.radians([65.0, 115.0])[:: 1 if past > 0.0 else -1]
+        start, end = (1.1 * MM * outer * np.array([np.cos(at), np.sin(at)]) for at in ends)
+        bend = 0.22 if past > 0.0 else -0.22
+        ax.annotate("", end, start, arrowprops={"arrowstyle": "->", "lw": 1.5, "connectionstyle": f"arc3,rad={bend}"})
+    pumped = pumps(row["angle"], -0.5 * past) if row["shape"] == "spiral" else ""
+    words = [f"{pattern.count} {NAMES[row['shape']]}, {_length(row['depth'])} deep", pumped and f"pump {pumped}"]
+    ax.set(xlim=(-1.2 * MM * outer, 1.2 * MM * outer), ylim=(-1.2 * MM * outer, 1.2 * MM * outer), aspect="equal",
+           xticks=[], yticks=[], title=f"Face of the {ring}, to scale")  # fmt: skip
+    ax.set_xlabel("\n".join(filter(None, words)), fontsize=8)
+    ax.grid(visible=False)
+    for side in ax.spines.values():
+        side.set_visible(False)
+
+
+def _at_first(run: Run, ring: str) -> float:
+    """Speed of a ring's carrier (rad/s), of one that changes the largest."""
+    value = (run.resolved["shaft" if ring == "rotor" else "stator"] or {}).get("speed") or 0.0
+    return max(value["value"], key=abs) if isinstance(value, dict) else value
 
 
 def panel(ax, run: Run) -> None:
