@@ -5,10 +5,7 @@ import numpy as np
 from matplotlib.colors import ListedColormap
 from matplotlib.patches import Annulus, Polygon, Rectangle
 
-from ...faces.pattern import pumps
-from ...films._grooved.aligned import pattern_of
 from ...quantities import in_words, printed, shown_in
-from ...scene.patterns import Grooves
 from .page import BLACK, CONTACT, GREY, PALE, PAPER, RING, SKY, look, save, sheet, written
 from .record import MM, Run
 
@@ -38,11 +35,11 @@ def draw(archive_path, out_path):
 def _front(ax, run: Run, ring: str, row: dict) -> None:
     """The face of a ring with its grooves, seen so that theta rises counter-clockwise; which way it turns past the
     other one."""
-    pattern = pattern_of(Grooves(**row))
+    count = row["count"]
     inner, outer = run.film("inner_radius"), run.film("outer_radius")
     r = np.linspace(inner, outer, ACROSS)
-    theta = np.linspace(0.0, 2.0 * np.pi, AROUND * pattern.count + 1)
-    deep = pattern.depth_at(r[:, None], theta) > 0.0
+    theta = np.linspace(0.0, 2.0 * np.pi, AROUND * count + 1)
+    deep = _is_deep(row, r[:, None], theta)
     x, y = (MM * r[:, None] * turned for turned in (np.cos(theta), np.sin(theta)))
     # A face for the lands, on which only what is deep is drawn.
     ax.add_patch(Annulus((0, 0), MM * outer, MM * (outer - inner), fc=RING[ring], alpha=0.75, ec=BLACK))
@@ -53,14 +50,27 @@ def _front(ax, run: Run, ring: str, row: dict) -> None:
         start, end = (1.1 * MM * outer * np.array([np.cos(at), np.sin(at)]) for at in ends)
         bend = 0.22 if past > 0.0 else -0.22
         ax.annotate("", end, start, arrowprops={"arrowstyle": "->", "lw": 1.5, "connectionstyle": f"arc3,rad={bend}"})
-    pumped = pumps(row["angle"], -0.5 * past) if row["shape"] == "spiral" else ""
-    words = [f"{pattern.count} {NAMES[row['shape']]}, {_length(row['depth'])} deep", pumped and f"pump {pumped}"]
+    # The other face drags its fluid against the way that this one turns past it.
+    pumped = "inwards" if (row["angle"] or 0.0) * past > 0.0 else "outwards"
+    pumped = pumped if past and row["shape"] == "spiral" else ""
+    words = [f"{count} {NAMES[row['shape']]}, {_length(row['depth'])} deep", pumped and f"pump {pumped}"]
     ax.set(xlim=(-1.2 * MM * outer, 1.2 * MM * outer), ylim=(-1.2 * MM * outer, 1.2 * MM * outer), aspect="equal",
            xticks=[], yticks=[], title=f"Face of the {ring}, to scale")  # fmt: skip
     ax.set_xlabel("\n".join(filter(None, words)), fontsize=8)
     ax.grid(visible=False)
     for side in ax.spines.values():
         side.set_visible(False)
+
+
+def _is_deep(row: dict, r, theta) -> np.ndarray:
+    """Whether a face with a row of grooves is deeper at radii r (m) and angles theta (rad), which broadcast."""
+    pitch, low, high = 2.0 * np.pi / row["count"], row["inner_radius"], row["outer_radius"]
+    bend = np.log(r / low) / np.tan(row["angle"]) if row["shape"] == "spiral" else 0.0
+    share = np.abs(np.mod((theta - row["phase"] - bend) / pitch + 0.5, 1.0) - 0.5) * 2.0
+    deep = (r >= low) & (r <= high) & (share <= row["share"])
+    if row["shape"] == "tee":
+        deep |= (r >= high) & (r <= row["stem_outer_radius"]) & (share <= row["stem_share"])
+    return deep
 
 
 def _at_first(run: Run, ring: str) -> float:
