@@ -43,7 +43,7 @@ from ...numerics.kernel import inner_kernel, outer_kernel, value_kernel
 from ...numerics.piecewise_linear import initially
 from ...scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE, viscosity_of
 from .._contract import PRESSURE, Film
-from .aligned import OpeningForce
+from .aligned import MET, OpeningForce
 from .balance import ARRIVED, LEAST, MOST_STEPS, PERMUTATION
 from .cells import (
     AREA,
@@ -383,7 +383,7 @@ def opening_law(table, mean_spin=0.0, spin_difference=0.0):
     s[TEMPERATURE] = initially(table.temperature) if table.gas is not None else 0.0
 
     def exact(clearance, inner_pressure, outer_pressure):
-        f[CLEARANCE], f[FLOOR] = clearance, 0.0
+        f[CLEARANCE] = clearance
         s[INNER_PRESSURE], s[OUTER_PRESSURE] = inner_pressure, outer_pressure
         if start(f, s, x):
             return math.nan
@@ -394,10 +394,12 @@ def opening_law(table, mean_spin=0.0, spin_difference=0.0):
         beside = [exact(clearance * (1.0 + k * 1e-4), inner_pressure, outer_pressure) for k in (-1, 0, 1)]
         return beside[1], (beside[2] - beside[0]) / 2e-4
 
-    between = OpeningForce(with_slope)
+    laws = {None: OpeningForce(with_slope)}
 
     def force(clearance, inner_pressure, outer_pressure, floor=None):
+        f[FLOOR] = floor or 0.0
         near = table.clearance is not None and abs(clearance / table.clearance - 1.0) < NEAR
+        between = laws.setdefault(floor, OpeningForce(with_slope, MET))
         return (exact if near else between)(clearance, inner_pressure, outer_pressure)
 
     return force

@@ -42,7 +42,7 @@ class LinearFilm:
         self.assembly, self.free = Assembly(mesh, turn), mesh.free
         self.stiff = self.assembly.data(film.slopes(p))
         self.weights = weights[:, mesh.free]
-        at_nodes, at_middles = shapes
+        at_nodes, at_middles = (shape * moved[:, None] for shape, moved in zip(shapes, film.follows, strict=True))
         at_corners = at_nodes[mesh.corners] * self.assembly.ahead[:, :, None]
         # What a thicker film carries more, and what it holds more.
         corners, gas = mesh.corners, film.conditions.gas
