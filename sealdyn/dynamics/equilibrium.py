@@ -215,21 +215,22 @@ def axial_shift(model, interval: Interval, speed: float | None = None) -> tuple[
         s[MEAN_SPIN], s[SPIN_DIFFERENCE] = 0.5 * (speed + w_s), speed - w_s
     closing = model.closing.over(interval, film)[0]
     excess = axial_excess(model, s, closing)
-    if abs(excess(0.0)) < 1e-9 * max(abs(closing), 1e-30):
+
+    @cache
+    def value(shift):
+        try:
+            return excess(shift)
+        except SceneError:
+            # No film there: wavy faces that meet, say, or grooves too fast for so thin a film.
+            return math.nan
+
+    if abs(value(0.0)) < 1e-9 * max(abs(closing), 1e-30):
         return 0.0, True
     grid = model.clearance * np.concatenate([np.geomspace(1e-3, 1.0, 60) - 1.0, np.geomspace(1e-3, 50, 80)])
 
-    @cache
-    def value(k):
-        try:
-            return excess(grid[k])
-        except SceneError:
-            # No film there: wavy faces that meet, say.
-            return math.nan
-
     # The stable root nearest to the design clearance: the excess falls through zero.
     for k in sorted(range(len(grid) - 1), key=lambda k: abs(grid[k])):
-        if value(k) > 0 >= value(k + 1):
+        if value(grid[k]) > 0 >= value(grid[k + 1]):
             return crossing(excess, grid[k], grid[k + 1]), True
     return 0.0, False
 

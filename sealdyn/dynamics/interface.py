@@ -33,7 +33,7 @@ from ..numerics.piecewise_linear import initially
 from ..scene.contact import contact_thresholds
 from ..scene.film import Coefficients, aligned_gaps, cells_of, coned
 from ..scene.patterns import grooves_of, waves_of
-from ..scene.scene import SceneError
+from ..scene.scene import Closing, SceneError
 from .condensation import NOISE, FilmDerivatives, LinearFilm, Slopes, film_slopes, linearise
 from .equilibrium import settle
 from .imposed_motion import set_conditions
@@ -287,21 +287,10 @@ def opening_law(scene, film=None):
 def opening_parts(scene, film=None):
     """Function `forces(clearance, p_i, p_o)` (N, N): opening force of the film, with the floor of rough faces, and of
     touching asperities, of aligned faces at rest (clearance in m, pressures in Pa); by a `film`, or the scene's own."""
-    if grooves_of(scene)[1] and film is None:
-        # Nearer than the mesh of a run.
-        from ..films._grooved.aligned import extrapolated_force
-
-        return extrapolated_force(scene).parts
-    film = lender(scene, film_of(scene, film))
-    table, surfaces = coned(replace(scene, film=prepared(scene, film))), {}
-    if waves_of(scene) and film.standing_waves:
-        surfaces["waves"] = scene.stator.waviness, scene.rotor.waviness
-    if scene.contact and film.waves_touch:
-        surfaces["contact"] = scene.contact
-    film_force = film.opening_law(table, *spins(scene), **surfaces)
+    film_force = _film_force(scene, film)
     if not scene.contact:
         return lambda clearance, inner, outer: (film_force(clearance, inner, outer), 0.0)
-    s, face = np.zeros(GAP_STATE_SIZE), face_parameters(table, 1.0)
+    s, face = np.zeros(GAP_STATE_SIZE), face_parameters(coned(scene), 1.0)
     asperities = lay_surfaces(face, scene)
 
     def forces(clearance: float, inner_pressure: float, outer_pressure: float) -> tuple[float, float]:
@@ -310,6 +299,28 @@ def opening_parts(scene, film=None):
         return film_force(clearance, inner_pressure, outer_pressure, face[FLOOR]), float(s[CONTACT_FORCE])
 
     return forces
+
+
+def _film_force(scene, film):
+    """Function `force(clearance, p_i, p_o, floor)` (N) of that film alone."""
+    if grooves_of(scene)[1] and film is None:
+        # Nearer than the mesh of a run; whatever closes the faces, at whatever clearance.
+        law = _over_grooves(Asked(replace(scene, closing=Closing(), film=replace(scene.film, clearance=None))))
+        return lambda clearance, inner, outer, floor=None: law(clearance, inner, outer)
+    film = lender(scene, film_of(scene, film))
+    table, surfaces = coned(replace(scene, film=prepared(scene, film))), {}
+    if waves_of(scene) and film.standing_waves:
+        surfaces["waves"] = scene.stator.waviness, scene.rotor.waviness
+    if scene.contact and film.waves_touch:
+        surfaces["contact"] = scene.contact
+    return film.opening_law(table, *spins(scene), **surfaces)
+
+
+@lru_cache(maxsize=8)
+def _over_grooves(asked):
+    from ..films._grooved.aligned import extrapolated_force
+
+    return extrapolated_force(asked.scene)
 
 
 def rest_state(scene, clearance, interval=None, mean_spin=None, shift=0.0, pace=None):

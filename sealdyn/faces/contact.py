@@ -2,11 +2,21 @@
 
 **Source** the laws: faces/roughness.py.  Friction as a share of the load or of the touching area and wear by Archard's
 law: Lebeck, Teale & Pierce, ONR ME-95(79)ONR-414-1 (1979).
-**Valid** rigid faces, coned, wavy or with a profile, rough at a scale far below their width; dry, and without memory.
+**Valid** rigid faces, coned, wavy, with a profile or grooves, rough at a scale far below their width; dry, and without
+memory.
 
 Contact depends on the film thickness alone, so it has a potential: V = int W(h) dA, dW/dh = -p_c, force and moments are
 minus its derivatives, and turning costs nothing but friction.  A face with a profile is a sum of annuli between its
-radii, which faces/roughness.py integrates.  The kernels take `k` this module's block, `f` a film's block (its
+radii, which faces/roughness.py integrates.
+
+Of a face with grooves, whose bottoms no asperity reaches, lands carry: int L p_c dA, L = sum_k L_k(r) e^{ikN phi} of 1
+and 0.  Of a contact pressure without harmonics from N - 1 on the mean share L_0 of land on each circle gives force and
+moments exactly; of any it gives their mean over all angles at which the pattern may stand, and has a potential.  L_0 is
+one number from edge to edge of a pattern.  Measured with 12 spiral grooves over half the pitch, c = 3 rms, h_min 0.2 c
+and a tilt of 0.6, 1, 2, 10 c at the outer edge: as the pattern turns the force differs by 2e-5, 3e-4, 2e-3, 0.4 (an arc
+as narrow as a groove); the gap at which a force is carried by less than 0.08 c, at first touch too.
+
+The kernels take `k` this module's block, `f` a film's block (its
 leading slots the faces) and `s` the gap state (slots in faces/geometry.py).
 """
 
@@ -17,6 +27,7 @@ import numpy as np
 
 from ..numerics.kernel import inner_kernel, outer_kernel, value_kernel
 from ..scene.contact import Contact, contact_thresholds
+from ..scene.patterns import land_shares
 from .geometry import (
     COLLAPSE,
     CONING_CHANGE,
@@ -48,10 +59,13 @@ from .geometry import (
     smallest_gap,
 )
 from .roughness import (
+    ANNULI,
+    ANNULUS_RADII,
     AREA,
     AROUND,
     ENERGY,
     FACE_AREA,
+    LAND_SHARES,
     LOAD,
     NODES,
     RADIAL,
@@ -77,9 +91,10 @@ ANGLES_PER_WAVE = 128
 _gauss = lru_cache(maxsize=16)(np.polynomial.legendre.leggauss)
 
 
-def lay_asperities(contact: Contact, face: np.ndarray, points: int | None = None) -> np.ndarray:
+def lay_asperities(contact: Contact, face: np.ndarray, points: int | None = None, lands=None) -> np.ndarray:
     """The contact's block of the parameter array, float64; the film thicknesses (m) of its floor, touch and collapse go
-    into the `face` block, or a film's that begins with it.  `points`: Gauss points of each panel around the circle.
+    into the `face` block, or a film's that begins with it.  `points`: Gauss points of each panel around the circle;
+    `lands`: radii (m) of a face with grooves and the share of land between them, as of patterns.land_shares.
     """
     points = points or ANGLE_POINTS[contact.law]
     if contact.law == "christensen":
@@ -100,7 +115,11 @@ def lay_asperities(contact: Contact, face: np.ndarray, points: int | None = None
         k[SHEAR_OF_LOAD] = 0.1 if contact.friction_coefficient is None else contact.friction_coefficient
     k[WEAR_PER_LOAD] = contact.stator_wear_coefficient + contact.rotor_wear_coefficient
     k[FACE_AREA] = math.pi * (face[OUTER_RADIUS] ** 2 - face[INNER_RADIUS] ** 2)
-    k[LOAD:AREA], k[AREA:ENERGY], k[ENERGY:NODES] = load, area, stored(load, top - bottom)
+    k[LOAD:AREA], k[AREA:ENERGY], k[ENERGY:ANNULI] = load, area, stored(load, top - bottom)
+    if lands is not None:
+        radii, shares = lands
+        k[ANNULI] = len(shares)
+        k[ANNULUS_RADII:LAND_SHARES][: len(radii)], k[LAND_SHARES:NODES][: len(shares)] = radii, shares
     k[RADIAL], k[AROUND], first = radial, points, NODES
     for count in (radial, points):
         node, weight = _gauss(count)
@@ -132,7 +151,12 @@ def _face(k, f, s, complete):
         if low >= k[TOP]:
             return
         r_i, r_o = f[INNER_RADIUS], f[OUTER_RADIUS]
-        load, arm, along, area, area_arm, energy, _ = annulus(k, r_i, r_o, _mean_arm(f), tilt, low_i, low_o, complete)
+        if k[ANNULI] == 0.0:
+            load, arm, along, area, area_arm, energy, _ = annulus(
+                k, r_i, r_o, _mean_arm(f), tilt, low_i, low_o, complete
+            )
+        else:
+            load, arm, along, area, area_arm, energy = _lands(k, r_i, r_o, tilt, low_i, low_o, complete)
     else:
         low, _ = smallest_gap(f, s[DZ], tilt, s[CONING_CHANGE])
         if low >= k[TOP]:
@@ -157,6 +181,22 @@ def _face(k, f, s, complete):
         s[CONTACT_X], s[CONTACT_Y] = along * s[GX] / tilt, along * s[GY] / tilt
     if complete:
         _complete(k, s, arm, area, area_arm, energy, low)
+
+
+@inner_kernel()
+def _lands(k, r_i, r_o, tilt, low_i, low_o, complete):
+    """As roughness.annulus but its last, of the lands of a face between r_i and r_o."""
+    load = arm = along = area = area_arm = energy = 0.0
+    per_width, high = 1.0 / (r_o - r_i), low_i
+    for n in range(int(k[ANNULI])):
+        inner, outer, share = k[ANNULUS_RADII + n], k[ANNULUS_RADII + n + 1], k[LAND_SHARES + n]
+        low, high = high, low_i + (low_o - low_i) * (outer - r_i) * per_width
+        if min(low, high) >= k[TOP]:
+            continue
+        a, b, c, d, e, g, _ = annulus(k, inner, outer, 0.0, tilt, low, high, complete)
+        load, arm, along = load + share * a, arm + share * b, along + share * c
+        area, area_arm, energy = area + share * d, area_arm + share * e, energy + share * g
+    return load, arm, along, area, area_arm, energy
 
 
 @inner_kernel()
@@ -281,4 +321,4 @@ def lay_surfaces(f, scene) -> np.ndarray | None:
     """Write the waves and the roughness of a scene's faces into a face block; returns the block of the asperities
     (contact.py), None for faces without `[contact]`."""
     lay_waves(f, scene.stator.waviness, scene.rotor.waviness)
-    return lay_asperities(scene.contact, f) if scene.contact else None
+    return lay_asperities(scene.contact, f, lands=land_shares(scene)) if scene.contact else None

@@ -121,12 +121,15 @@ def stored(load: np.ndarray, span: float) -> np.ndarray:
     return slots
 
 
-# Layout of the contact block: then the series, then nodes and weights on [0, 1] of the radius and of a panel of the
-# circle.
+# Layout of the contact block: then the series; annuli of a face with grooves, how many (0: none), room for their radii
+# and for the share of each that is land; then nodes and weights on [0, 1] of the radius and of a panel of the circle.
+MOST_ANNULI = 4
 TOP, SPAN, SHEAR_OF_LOAD, SHEAR_OF_AREA, WEAR_PER_LOAD, FACE_AREA, RADIAL, AROUND, LOAD = range(9)
 AREA = LOAD + SERIES_SIZE
 ENERGY = AREA + SERIES_SIZE
-NODES = ENERGY + SERIES_SIZE
+ANNULI = ENERGY + SERIES_SIZE
+ANNULUS_RADII, LAND_SHARES = ANNULI + 1, ANNULI + 2 + MOST_ANNULI
+NODES = LAND_SHARES + MOST_ANNULI
 
 
 @inner_kernel()

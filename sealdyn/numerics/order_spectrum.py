@@ -27,8 +27,11 @@ def order_spectrum(turns, signal):
 
     `turns` rise; where they do not rise evenly the signal is resampled by cubic interpolation.  Cut to a
     whole number of turns, so that integer orders fall on a line of the spectrum.  Returns orders,
-    amplitudes (of a cosine if real, of the rotating vector if complex), resolution (orders), resampled.
+    amplitudes (of a cosine if real, of the rotating vector if complex), resolution (orders), resampled.  Of what a
+    standing shaft has at one angle the first counts.
     """
+    turning = np.r_[True, np.diff(turns) != 0.0]
+    turns, signal = turns[turning], signal[turning]
     step = (turns[-1] - turns[0]) / (len(turns) - 1)
     resampled = bool(np.abs(np.diff(turns) / step - 1).max() > 1e-3)
     if resampled:

@@ -17,6 +17,7 @@ from typing import Literal
 from ..numerics.piecewise_linear import points
 from ..units import Angle, Height, Radius
 from . import Strict
+from .contact import contact_errors, contact_thresholds
 
 # Most waves of both faces together: kernels keep room for them.
 MOST_WAVES = 16
@@ -114,6 +115,20 @@ def grooves_of(scene) -> tuple[str, tuple[Grooves, ...]]:
     return "", ()
 
 
+def land_shares(scene) -> tuple[list[float], list[float]] | None:
+    """Radii (m) of a scene's face at which the share of land on a circle changes, from edge to edge of the face, and
+    that share between each and the next; None without grooves."""
+    for one in grooves_of(scene)[1]:
+        ends = [scene.film.inner_radius, one.inner_radius, one.outer_radius, scene.film.outer_radius]
+        shares = [1.0, 1.0 - one.share, 1.0]
+        if one.shape == "tee":
+            ends.insert(3, one.stem_outer_radius)
+            shares.insert(2, 1.0 - one.stem_share)
+        wide = [n for n in range(len(shares)) if ends[n + 1] > ends[n]]
+        return [ends[wide[0]], *(ends[n + 1] for n in wide)], [shares[n] for n in wide]
+    return None
+
+
 def grooves_errors(scene) -> list[tuple[str, str, str]]:
     """What a scene with grooves cannot have: (key, found, expected)."""
     name, grooves = grooves_of(scene)
@@ -167,7 +182,7 @@ def _beside_errors(scene) -> list[tuple[str, str, str]]:
     models = ("auto", "gas_reynolds" if gas else "reynolds")
     has = {
         "film.profile": film.profile, "film.pads": film.pads, "film.inertia": film.inertia, "film.heat": film.heat,
-        "contact": scene.contact,
+        "contact": None if gas else scene.contact,
         "stator.elastic": scene.stator.elastic, "stator.secondary_seal": scene.stator.secondary_seal,
         "rotor.secondary_seal": scene.rotor.secondary_seal, "stator.waviness": waves_of(scene),
     }  # fmt: skip
@@ -176,6 +191,12 @@ def _beside_errors(scene) -> list[tuple[str, str, str]]:
         for key, value in has.items()
         if not (value is None or value is False or value == [])
     ]
+    if gas and scene.contact and not contact_errors(scene.contact):
+        _, touch, flat = contact_thresholds(scene.contact)
+        name, (one,) = grooves_of(scene)
+        if one.depth < touch - flat:
+            expected = f"at least {touch - flat:.4g} m, into which no asperity of [contact] reaches,"
+            bad.append((f"{name}.grooves.0.depth", f"{one.depth:g} m", expected))
     for name in ("gas_reynolds", "reynolds"):
         options = getattr(film, name)
         if options is not None and not 2 <= options.columns <= MOST_COLUMNS:

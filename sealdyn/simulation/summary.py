@@ -195,17 +195,20 @@ def _cautions(scenario, run, outcome, tally) -> list[Caution]:
         from .heat import heat_cautions
 
         warm = heat_cautions(model.given, model.heat, settled_friction(model, tally))
-    return [*run.cautions, *energy, *_blown_open(model, tally), *found, *warm]
+    return [*run.cautions, *energy, *_blown_open(run, tally), *found, *warm]
 
 
-def _blown_open(model, tally) -> list[Caution]:
-    """A gap many times its clearance is no seal any more."""
-    widest = tally.most("axial_gap_change") / model.clearance
-    if not widest >= 10:
+def _blown_open(run, tally) -> list[Caution]:
+    """A gap many times its clearance, or that which the loads of a later time leave, is no seal any more."""
+    model, widest = run.model, tally.most("axial_gap_change")
+    if not widest >= 10 * model.clearance:
         return []
-    sentence = (
-        f"blown open: the gap grew by {widest:.3g} times the clearance; the closing force does not hold this film"
-    )
+    # A seal that starts on its asperities lifts by many times their height.
+    held = model.clearance + max(model.axial_shift(one) for one in (*run.intervals.few, run.intervals.end))
+    if not widest >= 10 * held:
+        return []
+    times = f"the gap grew by {widest / held:.3g} times the clearance"
+    sentence = f"blown open: {times}; the closing force does not hold this film"
     return [Caution(Concern.BLOWN_OPEN, sentence)]
 
 

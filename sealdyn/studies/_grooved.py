@@ -11,6 +11,8 @@ import numpy as np
 from ..answers import Answer, Axis, Level, Panel, Series, Table
 from ..dynamics.equilibrium import settle
 from ..dynamics.interface import opening_law
+from ..faces.contact import contact_load_and_friction, lay_surfaces
+from ..faces.geometry import CONTACT_FORCE, CONTACT_TORQUE, DZ, GAP_STATE_SIZE, SPIN_DIFFERENCE, WEAR, face_parameters
 from ..films._grooved.aligned import MANY, AlignedFilm, aligned_film, axial_stiffness
 from ..films._grooved.motion import (
     Motion,
@@ -25,7 +27,8 @@ from ..films._grooved.motion import (
 from ..numerics.piecewise_linear import initially
 from ..quantities import in_words
 from ..scenario.settings import values_in_si
-from ..scene.film import coned
+from ..scene.contact import touch_height
+from ..scene.film import aligned_gaps, coned
 from ..scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE, density_of
 from ..scene.scene import Closing, Scene, SceneError
 from ..scene.variants import frozen_at_start
@@ -36,20 +39,38 @@ CLOSER = 5
 # Relative change of a frequency that is near enough to begin from.
 NEXT_TO = 1e-2
 MOTIONS = ("axial", "tilt_forward", "tilt_backward")
+# Step of a difference of the asperities' load, in roughnesses.
+NEAR = 1e-4
 # Frequencies without any asked, in shaft speeds.
 FREQUENCIES = np.concatenate([[0.01], np.linspace(0.5, 30.0, 60)])
 
 
 def flows_over_grooves(scene, clearance: float, carried: float) -> dict:
     """What flows and rubs at a clearance (m) at which the faces carry `carried` (N) beyond the lower pressure, by the
-    names of a root of the study equilibrium; also the `torque` (N m) of the shaft, and the stiffness on finer meshes
-    than those of the curve."""
+    names of a root of the study equilibrium; also the `torque` (N m) of the shaft, and the stiffness, the film's on
+    finer meshes than those of the curve."""
     found, film = aligned_film(scene, clearance), scene.film
-    leakage, torque = _leakage(scene, found), found.better(lambda one: one.torque)[0]
-    arm = 0.5 * (film.inner_radius + film.outer_radius)
+    leakage, rubbed, held, wear = _leakage(scene, found), *lands(scene, clearance)
+    torque, arm = found.better(lambda one: one.torque)[0] + rubbed, 0.5 * (film.inner_radius + film.outer_radius)
     return {"friction_coefficient": abs(torque) / (carried * arm) if carried > 0.0 else None,
             "mass_flow": leakage * density_of(film), "leakage": leakage, "cavitated_fraction": found.fine.cavitated,
-            "torque": torque, "stiffness": found.better(axial_stiffness)[0]}  # fmt: skip
+            "torque": torque, "stiffness": found.better(axial_stiffness)[0] + held, **wear}  # fmt: skip
+
+
+def lands(scene, clearance: float) -> tuple[float, float, dict]:
+    """Torque (N m) and axial stiffness (N/m) of the lands that touch at a clearance (m) and, if they wear, depth rate
+    of both faces (m/s, mean over the face) as `wear_rate`."""
+    if scene.contact is None:
+        return 0.0, 0.0, {}
+    face, s = face_parameters(coned(scene), clearance), np.zeros(GAP_STATE_SIZE)
+    asperities, loads, step = lay_surfaces(face, scene), [], NEAR * scene.contact.roughness
+    s[SPIN_DIFFERENCE] = initially(scene.shaft.speed) - initially(scene.stator.speed)
+    for s[DZ] in (-step, step, 0.0):
+        contact_load_and_friction(asperities, face, s)
+        loads.append(s[CONTACT_FORCE])
+    wears = scene.contact.stator_wear_coefficient or scene.contact.rotor_wear_coefficient
+    stiffness = (loads[0] - loads[1]) / (2.0 * step)
+    return float(s[CONTACT_TORQUE]), float(stiffness), {"wear_rate": float(s[WEAR])} if wears else {}
 
 
 def _leakage(scene, found: AlignedFilm) -> float:
@@ -66,6 +87,9 @@ def coefficients_over_grooves(scenario, scene, settings) -> Answer:
     speeds the map of a clearance that the closing force decides follows it."""
     speed = initially(scene.shaft.speed)
     clearance, *_ = settle(scene, opening_law(scene))
+    if min(h for _, h in aligned_gaps(coned(scene), clearance)) < touch_height(scene):
+        found = f"asperities that touch at the clearance of {in_words('clearance', clearance)}"
+        raise SceneError("contact", found, "a film that lifts the lands off: these coefficients are the film's alone")
     found = aligned_film(scene, clearance)
     given = {
         name: None if words is None else values_in_si(scenario, str(words), "rad/s", f"--{name}")

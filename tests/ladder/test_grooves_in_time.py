@@ -75,7 +75,7 @@ def seal(table=GAS, grooves=SPIRAL, face="rotor", floats="stator", speed=W, stat
 def ready(scene):
     """Film, block, unknowns (n,) not yet known, and the gap state of aligned faces."""
     film = film_of(scene)
-    f = film.parameters(film.prepared(scene), scene.film.clearance)
+    f = film.parameters(film.whole(film.prepared(scene)), scene.film.clearance)
     s = gap_state(replace(scene.film, temperature=scene.film.temperature or 300.0), scene.shaft.speed)
     return film, f, np.empty(len(film.unknowns(f).names)), s
 

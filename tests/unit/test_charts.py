@@ -166,6 +166,10 @@ def test_with_changing_speed_orders_stay_sharp():
     assert resampled
     assert at_order(orders, amplitude, 1) == pytest.approx(2, rel=1e-3)
     assert amplitude[np.abs(orders - 1) > 0.2].max() < 1e-3
+    # A shaft that stood before and stands afterwards adds samples at one angle.
+    standing = np.concatenate([np.zeros(50), turns, np.full(50, turns[-1])])
+    _, found, _, _ = order_spectrum(standing, 2 * np.exp(2j * np.pi * standing))
+    assert found == pytest.approx(amplitude, abs=1e-12)
 
 
 def test_the_map_is_thinnest_where_the_archive_says(tmp_path):

@@ -18,6 +18,7 @@ from sealdyn.films._grooved.aligned import aligned_film, extrapolated_force
 from sealdyn.films._grooved.motion import tilt_law, unstable_roots
 from sealdyn.report.text import resolved_lines
 from sealdyn.scene.checks import scene_errors, unused
+from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import Shaft
 from sealdyn.scene.film import Film
 from sealdyn.scene.gas import GasReynolds
@@ -62,6 +63,7 @@ SPIRAL = Grooves(12, 6e-6, 0.0555, R_O, 0.5, angle=math.radians(15.0))
 SUPPORT = Support(axial_stiffness=1.64e4, axial_damping=1e3, tilt_stiffness=31.0, tilt_damping=1.4)
 RING = dict(mass=0.2, transverse_inertia=3.5e-4, support=SUPPORT)
 GAS = Film(R_I, R_O, 5e5, 1e5, viscosity=1.8e-5, gas="air", temperature=300.0, clearance=3e-6)
+LIQUID = Film(R_I, R_O, 5e5, 1e5, 1e-3, clearance=3e-6)
 ROW = {key: value[0] for key, value in ROWS["gas_5bar"]["expected"].items()}
 
 
@@ -107,6 +109,7 @@ def test_grooves_that_cannot_be(key, changes):
     [
         ("rotor.grooves", seal(rotor=[SPIRAL, SPIRAL])), ("rotor.grooves", seal(stator=[SPIRAL])),
         ("film.model", seal(replace(GAS, model="gas_dam"))), ("film.geometry", seal(replace(GAS, geometry="planar"))),
+        ("contact", seal(LIQUID, contact=Contact(1e-7, compressive_strength=3e8))),
     ],
 )  # fmt: skip
 def test_what_no_film_over_grooves_reckons_with(key, scene):

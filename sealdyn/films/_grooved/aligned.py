@@ -13,6 +13,7 @@ from functools import cached_property
 
 from ...faces.pattern import Box, Boxes, Spiral, pumps, tee
 from ...numerics.piecewise_linear import initially
+from ...scene.contact import contact_thresholds
 from ...scene.film import coned
 from ...scene.gas import GasReynolds, gas_of, viscosity_of
 from ...scene.patterns import Grooves, grooves_of
@@ -22,8 +23,8 @@ from .mesh import mesh_of
 from .motion import FEWEST, Motion, axial_film
 
 # Columns of the coarser mesh where a force is wanted at many clearances; e-folds of the clearance from node to node;
-# clearances (m) between which films are looked for.
-MANY, STRIDE, THINNEST, WIDEST = 8, 0.1, 2e-8, 2e-3
+# clearances (m) between which films are looked for, and the least where rough faces keep a film that meet.
+MANY, STRIDE, THINNEST, WIDEST, MET = 8, 0.1, 2e-8, 2e-3, 5e-10
 
 
 def pattern_of(one: Grooves) -> Spiral | Boxes:
@@ -53,6 +54,7 @@ def conditions_of(scene, clearance: float) -> Conditions:
         gas=gas is not None,
         slip=math.sqrt(0.5 * math.pi * gas.gas_constant * initially(film.temperature)) if slip else 0.0,
         cavity=film.cavitation_pressure if tears else None,
+        floor=contact_thresholds(scene.contact)[0] if scene.contact else 0.0,
     )
 
 
@@ -134,14 +136,14 @@ def aligned_film(scene, clearance: float, columns: int = COLUMNS, near: AlignedF
 
 class OpeningForce:
     """Opening force (N) of the aligned film over the clearance, `force(clearance, inner_pressure, outer_pressure)`; NaN
-    where it has no film.  `with_slope` of the same arguments gives the force and its slope by the logarithm of the
-    clearance (N), NaN where there is none."""
+    where it has no film, as below `thinnest` (m).  `with_slope` of the same arguments gives the force and its slope by
+    the logarithm of the clearance (N), NaN where there is none."""
 
-    def __init__(self, with_slope):
-        self.with_slope, self.nodes, self.none_below = with_slope, {}, {}
+    def __init__(self, with_slope, thinnest=THINNEST):
+        self.with_slope, self.thinnest, self.nodes, self.none_below = with_slope, thinnest, {}, {}
 
     def __call__(self, clearance: float, inner_pressure: float, outer_pressure: float) -> float:
-        if not THINNEST <= clearance <= WIDEST:
+        if not self.thinnest <= clearance <= WIDEST:
             return math.nan
         at, pressures = math.log(clearance) / STRIDE, (inner_pressure, outer_pressure)
         k = math.floor(at)
@@ -151,10 +153,6 @@ class OpeningForce:
             (1.0 + 2.0 * x) * (1.0 - x) ** 2 * f0 + x * x * (3.0 - 2.0 * x) * f1
             + x * (1.0 - x) ** 2 * d0 - x * x * (1.0 - x) * d1
         )  # fmt: skip
-
-    def parts(self, clearance: float, inner_pressure: float, outer_pressure: float) -> tuple[float, float]:
-        """The same, and that of asperities, which are not reckoned with."""
-        return self(clearance, inner_pressure, outer_pressure), 0.0
 
     def _node(self, n: int, pressures) -> tuple[float, float]:
         """Force (N) and its change per node (N) at node n."""
@@ -189,7 +187,7 @@ def extrapolated_force(scene) -> OpeningForce:
         found[clearance] = film
         return film.better(lambda one: one.force)[0], -film.better(axial_stiffness)[0] * clearance
 
-    return OpeningForce(with_slope)
+    return OpeningForce(with_slope, MET if scene.contact else THINNEST)
 
 
 def axial_stiffness(found: Steady) -> float:

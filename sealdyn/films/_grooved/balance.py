@@ -34,7 +34,8 @@ class Conditions:
     """What the film is at: `clearance` of the lands at the inner radius (m), `viscosity` (Pa s), pressures (Pa,
     absolute), `relative_speed` rotor less stator (rad/s), `face` that has the pattern ("rotor" or "stator"), `coning`
     (rad), `gas` or liquid, `slip` = sqrt(pi R T/2) (m/s), 0 without, `cavity` the pressure (Pa) at which a liquid
-    tears, None where it never does."""
+    tears, None where it never does, `floor` of the film over lands (m), below which it goes on as between rough faces
+    (faces/geometry.py `regularised_thickness`)."""
 
     clearance: float
     viscosity: float
@@ -46,11 +47,21 @@ class Conditions:
     gas: bool = True
     slip: float = 0.0
     cavity: float | None = None
+    floor: float = 0.0
 
     @property
     def entrainment(self) -> float:
         """In the frame of the pattern (rad/s)."""
         return (-0.5 if self.face == "rotor" else 0.5) * self.relative_speed
+
+    def lands(self, beyond) -> np.ndarray:
+        """Film over the lands (m), so far (m) beyond the inner radius."""
+        h = self.clearance + self.coning * np.asarray(beyond)
+        return np.where(h >= self.floor, h, self.floor**2 / np.maximum(2.0 * self.floor - h, self.floor or 1.0))
+
+    def follows(self, lands) -> np.ndarray:
+        """By how much it changes with the gap where it is `lands` (m)."""
+        return np.where(lands >= self.floor, 1.0, (lands / (self.floor or 1.0)) ** 2)
 
 
 # Newton's steps, the relative change of pressures after which rounding is left, and the least share of a pressure that
@@ -106,8 +117,8 @@ class Film:
         self.r = np.exp(self.u)
         self.inner_radius = math.exp(mesh.u.min())
         c = conditions
-        self.h = c.clearance + c.coning * (self.r - self.inner_radius) + mesh.depth
-        self.lands = c.clearance + c.coning * (np.exp(mesh.u) - self.inner_radius)
+        middles, self.lands = c.lands(self.r - self.inner_radius), c.lands(np.exp(mesh.u) - self.inner_radius)
+        self.h, self.follows = middles + mesh.depth, (c.follows(self.lands), c.follows(middles))
         if not (self.h.min() > 0.0 and self.lands.min() > 0.0):
             raise ValueError(f"clearance: the faces meet at {c.clearance:g} m with a coning of {c.coning:g} rad")
         by_u, by_phi = mesh.gradients
@@ -237,7 +248,7 @@ class Steady:
         sheared = 0.0
         for at, weight in SEVEN:
             r = np.exp(mesh.corner_u @ at)
-            h = c.clearance + c.coning * (r - film.inner_radius) + mesh.depth
+            h = c.lands(r - film.inner_radius) + mesh.depth
             sheared += weight * float(np.sum(mesh.area * r**4 / h))
         p_phi = np.sum(mesh.gradients[1] * self.p[mesh.corners], axis=1)
         pushed = float(np.sum(0.5 * mesh.area * film.h * film.r**2 * p_phi))

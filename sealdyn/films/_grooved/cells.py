@@ -40,7 +40,7 @@ from ...numerics.piecewise_linear import points
 from ...scene.film import Film as Table
 from ...scene.film import Reynolds
 from ...scene.gas import GasReynolds, gas_of
-from ...scene.patterns import Grooves, grooves_of
+from ...scene.patterns import Grooves, alike_sectors, grooves_of
 from ...scene.scene import SceneError
 from .._contract import FilmUnknowns
 from .aligned import conditions_of, pattern_of
@@ -69,10 +69,12 @@ TRIANGLE_SIZE = LINKS + 27
 
 @dataclass(frozen=True)
 class GroovedTable(Table):
-    """A `Film` table with the grooves of the scene and the ring whose face has them."""
+    """A `Film` table with the grooves of the scene and the ring whose face has them; `alike`: nothing tilts, and one
+    pitch is computed for all."""
 
     face: str = "rotor"
     grooves: Grooves | None = None
+    alike: bool = False
 
 
 def prepared(scene) -> GroovedTable:
@@ -85,8 +87,13 @@ def prepared(scene) -> GroovedTable:
             "equilibrium, load-support, stribeck, coefficients)"
         )
         raise SceneError("film.cavitation_pressure", f"{scene.film.cavitation_pressure:g} Pa", expected)
-    given = {name: value for name, value in vars(scene.film).items() if name not in ("face", "grooves")}
-    return GroovedTable(**given, face=face, grooves=one)
+    given = {name: value for name, value in vars(scene.film).items() if name not in ("face", "grooves", "alike")}
+    return GroovedTable(**given, face=face, grooves=one, alike=alike_sectors(scene) != 1)
+
+
+def whole(table) -> GroovedTable:
+    """The table with all pitches of the circle."""
+    return replace(table, alike=False)
 
 
 def options_of(table):
@@ -130,8 +137,9 @@ def parameters(table, clearance: float, error: float = 1e-8) -> np.ndarray:
     pressure = max(*points(table.inner_pressure), *points(table.outer_pressure))
     slips = gas is not None and options_of(table).slip
     f[NODES:SCALE] = (
-        nodes, len(mesh.free), triangles, mesh.count, mesh.count, 1.0 if table.face == "rotor" else -1.0,
-        gas is not None, 0.5 * math.sqrt(0.5 * math.pi * gas.gas_constant) if slips else 0.0,
+        nodes, len(mesh.free), triangles, 1.0 if table.alike else mesh.count, mesh.count,
+        1.0 if table.face == "rotor" else -1.0, gas is not None,
+        0.5 * math.sqrt(0.5 * math.pi * gas.gas_constant) if slips else 0.0,
     )  # fmt: skip
     f[SCALE] = pressure * clearance if gas else pressure
     # Weights and areas hang on the mesh alone.
@@ -149,10 +157,22 @@ def parameters(table, clearance: float, error: float = 1e-8) -> np.ndarray:
     rows = _of_triangles(f)
     rows[:, :BY_U] = np.stack([still.r, np.sin(still.phi), np.cos(still.phi), mesh.depth, mesh.area], axis=1)
     rows[:, BY_U:LINKS] = np.hstack([*mesh.gradients, mesh.corners, mesh.shifts])
+    return _linked(f)
+
+
+def _linked(f) -> np.ndarray:
+    """The block with what hangs on the pitches that are computed."""
     keys, _, places = links(f)
     f[ENTRIES] = keys.shape[1]
-    rows[:, LINKS:] = np.concatenate([found.reshape(-1, 9) for found in places], axis=1)
+    _of_triangles(f)[:, LINKS:] = np.concatenate([found.reshape(-1, 9) for found in places], axis=1)
     return f
+
+
+def of_one_pitch(f) -> np.ndarray:
+    """The block of one pitch that stands for all."""
+    one = f.copy()
+    one[SECTORS] = 1.0
+    return _linked(one)
 
 
 def of_nodes(f):
@@ -174,7 +194,8 @@ def links(f):
     place = of_nodes(f)[PLACE][table[:, CORNERS:SHIFTS].astype(int)].astype(int)
     ahead = table[:, SHIFTS:LINKS].astype(int)
     row, column = (np.broadcast_to(part, (len(table), 3, 3)) for part in (place[:, :, None], place[:, None, :]))
-    offset = np.broadcast_to(ahead[:, :, None] - ahead[:, None, :], row.shape)
+    # One pitch has itself to both sides.
+    offset = np.broadcast_to((ahead[:, :, None] - ahead[:, None, :]) * (f[SECTORS] > 1.0), row.shape)
     taken = (row >= 0) & (column >= 0)
     places, codes = [], []
     for order in ((0, 1, -1), (-1, 0, 1), (1, -1, 0)):

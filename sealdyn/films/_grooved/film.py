@@ -10,6 +10,7 @@ M = M' e^{i psi}: steps of an integrator see no groove pass.
 """
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from scipy.sparse import csc_array
@@ -43,7 +44,7 @@ from ...numerics.kernel import inner_kernel, outer_kernel, value_kernel
 from ...numerics.piecewise_linear import initially
 from ...scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE, viscosity_of
 from .._contract import PRESSURE, Film
-from .aligned import OpeningForce
+from .aligned import MET, OpeningForce
 from .balance import ARRIVED, LEAST, MOST_STEPS, PERMUTATION
 from .cells import (
     AREA,
@@ -76,9 +77,9 @@ from .cells import (
     halved,
     land_rates,
     lands,
-    links,
     node_table,
     of_nodes,
+    of_one_pitch,
     parameters,
     pattern_of_rows,
     prepared,
@@ -87,6 +88,7 @@ from .cells import (
     triangle_table,
     turned,
     unknowns,
+    whole,
 )
 
 UNSOLVED, TORN = 1, 2
@@ -316,8 +318,8 @@ def fields(f, s, x, out):
 def start(f, s, x) -> int:
     """Unknowns `x` (n,) of the film that is steady in the pattern's frame at a gap state, but for what the gap's own
     rates squeeze.  Returns 0, or a code where none is found."""
-    one, aligned, table = f.copy(), s.copy(), of_nodes(f)
-    one[SECTORS], aligned[[GX, GY, GX_RATE, GY_RATE]] = 1.0, 0.0
+    one, aligned, table = of_one_pitch(f), s.copy(), of_nodes(f)
+    aligned[[GX, GY, GX_RATE, GY_RATE]] = 0.0
     share = np.log(table[RADIUS] / f[INNER_RADIUS]) / math.log(f[OUTER_RADIUS] / f[INNER_RADIUS])
     power = 2.0 if f[GAS] != 0.0 else 1.0
     inner, outer = s[INNER_PRESSURE] ** power, s[OUTER_PRESSURE] ** power
@@ -350,15 +352,11 @@ def _settled(f, s, x) -> bool:
     """Newton's steps from `x` (n,) on, in place."""
     gas, pattern, (held, squeezed) = f[GAS] != 0.0, pattern_of_rows(f), _held(f, s)
     data, res = np.empty(int(f[ENTRIES] * f[SECTORS])), np.empty(len(x))
-    keys, own = links(f)[0], csc_array((squeezed, np.arange(len(x)), np.arange(len(x) + 1)), shape=pattern.shape)
+    own = csc_array((squeezed, np.arange(len(x)), np.arange(len(x) + 1)), shape=pattern.shape)
     for _ in range(MOST_STEPS):
         residual(f, s, x, squeezed * x, res)
         jacobian(f, s, x, res, 0.0, data)
-        if f[SECTORS] == 1.0:
-            # Those of the pitches to both sides among its own.
-            matrix = csc_array((data, (keys[1], keys[0])), shape=pattern.shape)
-        else:
-            matrix = csc_array((data, pattern.indices, pattern.indptr), shape=pattern.shape)
+        matrix = csc_array((data, pattern.indices, pattern.indptr), shape=pattern.shape)
         try:
             change = splu(csc_array(matrix + own), permc_spec=PERMUTATION).solve(-res)
         except RuntimeError:
@@ -375,15 +373,14 @@ def _settled(f, s, x) -> bool:
 def opening_law(table, mean_spin=0.0, spin_difference=0.0):
     """Opening force (N) of the aligned film, `force(clearance, inner_pressure, outer_pressure, floor)`, on the mesh of
     a run, so that rings rest where it balances the closing force; far from the clearance of the table read between."""
-    f = parameters(table, 1.0)
-    f[SECTORS] = 1.0
+    f = parameters(replace(table, alike=True), 1.0)
     x, s = np.empty(int(f[FREE])), np.zeros(GAP_STATE_SIZE)
     s[MEAN_SPIN], s[SPIN_DIFFERENCE] = mean_spin, spin_difference
     s[VISCOSITY] = initially(viscosity_of(table))
     s[TEMPERATURE] = initially(table.temperature) if table.gas is not None else 0.0
 
     def exact(clearance, inner_pressure, outer_pressure):
-        f[CLEARANCE], f[FLOOR] = clearance, 0.0
+        f[CLEARANCE] = clearance
         s[INNER_PRESSURE], s[OUTER_PRESSURE] = inner_pressure, outer_pressure
         if start(f, s, x):
             return math.nan
@@ -394,10 +391,12 @@ def opening_law(table, mean_spin=0.0, spin_difference=0.0):
         beside = [exact(clearance * (1.0 + k * 1e-4), inner_pressure, outer_pressure) for k in (-1, 0, 1)]
         return beside[1], (beside[2] - beside[0]) / 2e-4
 
-    between = OpeningForce(with_slope)
+    laws = {None: OpeningForce(with_slope)}
 
     def force(clearance, inner_pressure, outer_pressure, floor=None):
+        f[FLOOR] = floor or 0.0
         near = table.clearance is not None and abs(clearance / table.clearance - 1.0) < NEAR
+        between = laws.setdefault(floor, OpeningForce(with_slope, MET))
         return (exact if near else between)(clearance, inner_pressure, outer_pressure)
 
     return force
@@ -426,6 +425,7 @@ FILM = Film(
     residual=residual,
     jacobian=jacobian,
     wrench_jacobian=wrench_jacobian,
+    whole=whole,
     frame=frame,
     prepared=prepared,
     halved=halved,

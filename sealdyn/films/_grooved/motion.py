@@ -43,7 +43,7 @@ class LinearFilm:
         self.stiff = self.assembly.data(film.slopes(p, steady.torn))
         # A void presses with nothing.
         self.weights = (weights if steady.torn is None else np.where(steady.torn, 0.0, weights))[:, mesh.free]
-        at_nodes, at_middles = shapes
+        at_nodes, at_middles = (shape * moved[:, None] for shape, moved in zip(shapes, film.follows, strict=True))
         at_corners = at_nodes[mesh.corners] * self.assembly.ahead[:, :, None]
         # What a thicker film carries more, and what it holds more.
         corners, gas = mesh.corners, film.conditions.gas
