@@ -19,6 +19,7 @@ LONGEST = 2000  # turns; then the clock is set anew
 FEW = 100  # intervals between two break points that stand for all
 
 INSTANTS = 1000  # of an interval are its end
+ROUNDING = 1e-13  # of a value is what a sum of two has lost
 
 # 2 pi to 60 digits (mathematical constant).
 TURN = Decimal("6.28318530717958647692528676655900576839433879875021164194988918")
@@ -81,7 +82,9 @@ def constant_and_slope(quantity, interval: Interval) -> tuple[float, float]:
         return float(quantity), 0.0
     if isinstance(interval, Instant):
         value, slope = constant_and_slope(quantity, interval.within)
-        return value + slope * float(interval.start - interval.within.start), slope
+        now = value + slope * float(interval.start - interval.within.start)
+        # Of what has come to rest rounding is left.
+        return (now if abs(now) > ROUNDING * abs(value) else 0.0), slope
     t0, t1 = interval.time, interval.time + interval.length
     # Ask just inside, so that a step at either end counts on the right side.
     inside = t0 + 0.5 * (t1 - t0)

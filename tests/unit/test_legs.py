@@ -25,7 +25,7 @@ from sealdyn.dynamics.imposed_motion import (
     harmonics_of_segment,
     imposed_state,
 )
-from sealdyn.dynamics.intervals import constant_and_slope, modulo_turn, split_at_breaks, time_of_angle
+from sealdyn.dynamics.intervals import Instant, constant_and_slope, modulo_turn, split_at_breaks, time_of_angle
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scenario.reader import read_scenario
 from sealdyn.scene.excitation import AngularVibration, AxialVibration, Housing, Shaft, Whirl
@@ -193,6 +193,14 @@ TABLES = {
 def test_time_of_an_angle(table):
     for angle in (0.5, 30.0, 200.0, 431.0, 2500.0):
         assert turned_by(table, time_of_angle(table, angle)) == pytest.approx(angle, rel=1e-9)
+
+
+def test_what_has_come_to_rest_has_no_speed():
+    """Not what is left of rounding, over which a whirl ratio would be a number."""
+    for top, long in ((100.0, 0.7), (523.598, 0.3), (1047.2, 1.1)):
+        stop = PiecewiseLinear((0.0, 0.1, 0.1 + long), (top, top, 0.0))
+        last = split_at_breaks(0.1 + long, 0.0, 0.0, [stop])[-1]
+        assert constant_and_slope(stop, Instant.of(last, last.length))[0] == 0.0
 
 
 def test_time_of_an_angle_at_constant_speed():
