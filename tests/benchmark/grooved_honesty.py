@@ -4,7 +4,7 @@
 
 Random seals with spiral grooves, T-grooves or pads in either face, of gases and liquids, FMS and FMR, forced by runout
 and misalignment, flat and coned, from rest and from the steady state.  A run is done as `sealdyn run` does it; the
-truth is a sharper run on three times as many columns, of whose difference the order of the grooves' tips says how much is
+truth is a sharper run on three times as many columns; the order of the grooves' tips says how much of the difference is
 left.  Honest: every quantity of the certificate is right within the asked accuracy, or the run says that it is not.
 """
 
