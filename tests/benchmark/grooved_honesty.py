@@ -127,7 +127,7 @@ if __name__ == "__main__":
     scenes, seed, processes = (*map(int, sys.argv[1:]), *(SCENES, SEED, 2)[len(sys.argv) - 1 :])
     with ProcessPoolExecutor(processes) as pool:
         lines = []
-        for line in pool.map(said, pool.map(partial(judge, seed=seed), range(scenes))):
+        for line in map(said, pool.map(partial(judge, seed=seed), range(scenes))):
             lines.append(line)
             print(line, flush=True)
     print({word: sum(word in line for line in lines) for word in ("right", "SAID", "WRONG", "not judged")})

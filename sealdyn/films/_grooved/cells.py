@@ -70,11 +70,12 @@ TRIANGLE_SIZE = LINKS + 27
 @dataclass(frozen=True)
 class GroovedTable(Table):
     """A `Film` table with the grooves of the scene and the ring whose face has them; `alike`: nothing tilts, and one
-    pitch is computed for all."""
+    pitch is computed for all; so many `times` the mesh of half the columns."""
 
     face: str = "rotor"
     grooves: Grooves | None = None
     alike: bool = False
+    times: int = 2
 
 
 def prepared(scene) -> GroovedTable:
@@ -102,10 +103,8 @@ def options_of(table):
 
 
 def halved(table):
-    """The table with half the columns to a pitch."""
-    name = "reynolds" if table.gas is None else "gas_reynolds"
-    options = options_of(table)
-    return replace(table, **{name: replace(options, columns=max(options.columns // 2, 2))})
+    """The table with half the columns to a pitch, and half the rows: every second node of the mesh."""
+    return replace(table, times=1)
 
 
 def cell_order(table) -> float:
@@ -123,7 +122,9 @@ def _mesh(table):
         found = f"{table.grooves.count} pitches, whose stiffness in tilt is not the same about all axes"
         raise SceneError(f"{key}.0.count", found, f"at least {FEWEST} grooves, as yet")
     try:
-        return mesh_of(pattern_of(table.grooves), table.inner_radius, table.outer_radius, options_of(table).columns)
+        # Twice a mesh of half the columns, which is that of `halved`.
+        return mesh_of(pattern_of(table.grooves), table.inner_radius, table.outer_radius,
+                       0.5 * options_of(table).columns, table.times, least=1)  # fmt: skip
     except ValueError as error:
         raise SceneError(key, str(error), "fewer grooves, or steeper ones") from None
 

@@ -92,10 +92,17 @@ class Mesh:
 # Films at many clearances and speeds have one mesh.
 @lru_cache(maxsize=16)
 def mesh_of(
-    pattern: Spiral | Boxes, inner_radius: float, outer_radius: float, columns: int, times: int = 1, bisections: int = 8
+    pattern: Spiral | Boxes,
+    inner_radius: float,
+    outer_radius: float,
+    columns: float,
+    times: int = 1,
+    bisections: int = 8,
+    least: int = 2,
 ) -> Mesh:
     """One pitch of a pattern between the radii (m) of a face: `columns` to the pitch, rows to suit, both so many
-    `times` over, and so many bisections at tips.  Raises ValueError for more than MOST_NODES."""
+    `times` over, at `least` so many between neighbouring edges of the pattern, times that, and so many bisections at
+    tips.  Raises ValueError for more than MOST_NODES."""
     edges = pattern.edges
     pitch = 2.0 * math.pi / pattern.count
     width = pitch / columns
@@ -104,8 +111,8 @@ def mesh_of(
     height = min(height, math.log(outer_radius / inner_radius) / columns)
     if (nodes := columns * times**2 * math.log(outer_radius / inner_radius) / height) > MOST_NODES:
         raise ValueError(f"{nodes:.3g} nodes to a pitch, more than {MOST_NODES}: grooves so many and so flat")
-    u = _divided([math.log(r) for r in _breaks(edges, inner_radius, outer_radius)], height, times)
-    xi = _divided([*edges.angles, edges.angles[0] + pitch], width, times)[:-1]
+    u = _divided([math.log(r) for r in _breaks(edges, inner_radius, outer_radius)], height, times, least)
+    xi = _divided([*edges.angles, edges.angles[0] + pitch], width, times, least)[:-1]
     low, high = np.log(edges.twisted)
     phi = xi + edges.slope * (np.clip(u, low, high) - math.log(edges.reference))[:, None]
 
@@ -143,11 +150,12 @@ def _breaks(edges: Edges, inner_radius: float, outer_radius: float) -> list[floa
     return [inner_radius, *between, outer_radius]
 
 
-def _divided(breaks, step: float, times: int) -> np.ndarray:
-    """Values from the first break to the last, evenly between neighbours, a step over so many times apart."""
+def _divided(breaks, step: float, times: int, least: int) -> np.ndarray:
+    """Values from the first break to the last, evenly between neighbours, a step over so many times apart, at `least`
+    so many steps between two breaks."""
     parts = [np.array(breaks[:1])]
     for a, b in pairwise(breaks):
-        parts.append(np.linspace(a, b, max(round((b - a) / step), 2) * times + 1)[1:])
+        parts.append(np.linspace(a, b, max(round((b - a) / step), least) * times + 1)[1:])
     return np.concatenate(parts)
 
 
