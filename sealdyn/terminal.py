@@ -139,7 +139,7 @@ class Progress:
         self.runs = 1
         # Clock (s) and motion (s): two seconds ago or one, and one second ago or less; and when it moved last.
         self.marks, self.moved = [], monotonic()
-        self.lock, self.timer = Lock(), Timer(PATIENCE, self._show)
+        self.lock, self.timer = Lock(), Timer(PATIENCE, self._show_if_it_can)
         self.timer.daemon = True
 
     def __enter__(self):
@@ -212,6 +212,11 @@ class Progress:
             if self.bar:
                 words = ": compiling kernels" if self.compiling else ""
                 self.bar.update(self.task, words=self.now["words"] + words)
+
+    def _show_if_it_can(self):
+        # What has no descriptors left for it goes on without a bar.
+        with contextlib.suppress(OSError, ImportError):
+            self._show()
 
     def _show(self):
         from rich.console import Console
