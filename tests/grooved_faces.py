@@ -12,8 +12,35 @@ from sealdyn.faces.pattern import Spiral
 from sealdyn.films._grooved.balance import Conditions, steady, steady_pair
 from sealdyn.films._grooved.mesh import mesh_of
 
-__all__ = ["AREA", "GAS", "LIQUID", "ROWS", "R_I", "R_O", "SPIRAL", "TEE", "film", "films_of", "pattern_of"]
+__all__ = [
+    "AREA", "FACES_TOML", "GAS", "LIQUID", "RINGS_TOML", "ROWS", "R_I", "R_O", "SPIRAL", "TEE", "film", "films_of",
+    "pattern_of",
+]  # fmt: skip
 ROWS = grooved_rows()
+# The face of row gas_5bar in a scenario: what follows `[film]`, and the rings, up to what else the support has.
+FACES_TOML = """
+gas = "air"
+temperature = "300 K"
+viscosity = "1.8e-5 Pa*s"
+inner_radius = "51.6 mm"
+outer_radius = "61.6 mm"
+inner_pressure = "1 bar"
+"""
+RINGS_TOML = """
+[[rotor.grooves]]
+count = 12
+depth = "6 um"
+inner_radius = "55.5 mm"
+outer_radius = "61.6 mm"
+angle = "15 deg"
+share = 0.5
+[stator]
+mass = "0.2 kg"
+transverse_inertia = "3.5e-4 kg*m^2"
+[stator.support]
+axial_stiffness = "1.64e4 N/m"
+tilt_stiffness = "31 N*m/rad"
+"""
 R_I, R_O = 0.0516, 0.0616
 AREA = math.pi * (R_O**2 - R_I**2)
 SPIRAL = Spiral(12, 0.0555, R_O, math.radians(15.0), 0.5, 6e-6)

@@ -73,6 +73,13 @@ def lands(scene, clearance: float) -> tuple[float, float, dict]:
     return float(s[CONTACT_TORQUE]), float(stiffness), {"wear_rate": float(s[WEAR])} if wears else {}
 
 
+def refuse_touching(scene, clearance: float) -> None:
+    """Raises SceneError where lands touch at a clearance (m): small motion here is of the film alone."""
+    if min(h for _, h in aligned_gaps(coned(scene), clearance)) < touch_height(scene):
+        found = f"asperities that touch at the clearance of {in_words('clearance', clearance)}"
+        raise SceneError("contact", found, "a film that lifts the lands off: small motion here is of the film alone")
+
+
 def _leakage(scene, found: AlignedFilm) -> float:
     """Flow from the high to the low pressure, m^3/s; of a gas at normal conditions."""
     film = scene.film
@@ -87,9 +94,7 @@ def coefficients_over_grooves(scenario, scene, settings) -> Answer:
     speeds the map of a clearance that the closing force decides follows it."""
     speed = initially(scene.shaft.speed)
     clearance, *_ = settle(scene, opening_law(scene))
-    if min(h for _, h in aligned_gaps(coned(scene), clearance)) < touch_height(scene):
-        found = f"asperities that touch at the clearance of {in_words('clearance', clearance)}"
-        raise SceneError("contact", found, "a film that lifts the lands off: these coefficients are the film's alone")
+    refuse_touching(scene, clearance)
     found = aligned_film(scene, clearance)
     given = {
         name: None if words is None else values_in_si(scenario, str(words), "rad/s", f"--{name}")
@@ -241,6 +246,7 @@ class RootsOverSpeed:
         roots of film and ring are `growing`, counted."""
         turned = frozen_at_start(self.free, speed=speed)
         clearance = settle(turned, opening_law(turned))[0]
+        refuse_touching(turned, clearance)
         found = modes(turned, aligned_film(turned, clearance, MANY))
         growing = found["unstable_axial"] + found["unstable_tilt"]
         return {"clearance": clearance, "growing": growing, **{name: found[name] for name in MOTIONS}}

@@ -209,9 +209,8 @@ def _refuse_seal(name: str, info: Info, scene):
     if _is_radial(scene):
         return
     if (face := grooves_of(scene)[0]) and not info.grooved:
-        served = (
-            "none, or one of the studies campbell, coefficients, equilibrium, load-support, stribeck, sweep, or a run"
-        )
+        known = [one for one in studies.study_names() if study_info(one.replace("-", "_")).grooved]
+        served = f"none, a run, or one of the studies {', '.join(known)}"
         raise SceneError(f"{face}.grooves", "grooves in a face", f"{served}: {name} does not reckon with grooves")
     if info.wavy:
         return

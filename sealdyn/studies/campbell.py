@@ -87,7 +87,7 @@ def _over_grooves(scene, settings, tools) -> Answer:
     # Sparse matrices are loaded for grooves only.
     from ._grooved import roots_over_speed
 
-    top = settings.speed_to if settings.speed_to is not None else 2.0 * abs(scene.shaft.speed)
+    top = settings.speed_to if settings.speed_to is not None else 2.0 * abs(scene.shaft.speed) or 2000.0
     points = max(3, settings.points or POINTS_OVER_GROOVES)
     # At rest grooves do not pump.
     speeds = np.linspace(settings.speed_from or top / points, top, points)

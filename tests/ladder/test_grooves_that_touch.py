@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from grooved_faces import R_I, R_O
+from grooved_faces import FACES_TOML, R_I, R_O, RINGS_TOML
 from grooved_faces import SPIRAL as SPIRAL_PATTERN
 from scenes import run
 from scipy.optimize import brentq
@@ -41,19 +41,16 @@ from sealdyn.scene.gas import GasReynolds
 from sealdyn.scene.patterns import Grooves, grooves_errors
 from sealdyn.scene.rings import Rotor, Stator, Support
 from sealdyn.scene.scene import Closing, Scene, SceneError
+from sealdyn.scene.variants import frozen_at_start
+from sealdyn.studies._grooved import RootsOverSpeed
 
-START = """
+START = f"""
 [shaft]
 speed = "1 rad/s"
 [film]
-gas = "air"
-temperature = "300 K"
-viscosity = "1.8e-5 Pa*s"
-inner_radius = "51.6 mm"
-outer_radius = "61.6 mm"
-inner_pressure = "1 bar"
+{FACES_TOML}
 outer_pressure = "1 bar"
-gas_reynolds = { slip = true }
+gas_reynolds = {{ slip = true }}
 [contact]
 roughness = "0.1 um"
 compressive_strength = "300 MPa"
@@ -61,19 +58,7 @@ friction_coefficient = 0.15
 [closing]
 balance_ratio = 0.8
 spring_force = "100 N"
-[[rotor.grooves]]
-count = 12
-depth = "6 um"
-inner_radius = "55.5 mm"
-outer_radius = "61.6 mm"
-angle = "15 deg"
-share = 0.5
-[stator]
-mass = "0.2 kg"
-transverse_inertia = "3.5e-4 kg*m^2"
-[stator.support]
-axial_stiffness = "1.64e4 N/m"
-tilt_stiffness = "31 N*m/rad"
+{RINGS_TOML}
 [run]
 turns = 1
 """
@@ -285,9 +270,14 @@ def test_held_speeds_show_where_it_lifts(tmp_path):
     assert torque[0] == pytest.approx(0.15 * 100.0 * 0.057, rel=0.06)
 
 
-def test_coefficients_of_lands_that_touch_are_refused(tmp_path):
+def test_small_motion_of_lands_that_touch_is_refused(tmp_path):
     path = tmp_path / "start.toml"
     path.write_text(START)
     with pytest.raises(SceneError) as refused:
         run_study("coefficients", read_scenario(path), tmp_path / "answer.h5")
     assert refused.value.key == "contact"
+    # Nor are the roots of the ring those of the film alone, at the speeds at which it touches.
+    roots = RootsOverSpeed(frozen_at_start(read_scenario(path).scene))
+    with pytest.raises(SceneError) as refused:
+        roots(10.0)
+    assert refused.value.key == "contact" and roots(100.0)["axial"] is not None

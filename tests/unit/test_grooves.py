@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from command import SCENARIOS
-from grooved_faces import AREA, R_I, R_O, ROWS
+from grooved_faces import AREA, FACES_TOML, R_I, R_O, RINGS_TOML, ROWS
 
 from sealdyn import read_scenario, run_study
 from sealdyn.analysis.check import checked
@@ -29,32 +29,15 @@ from sealdyn.scene.variants import counterpart, frozen_at_start
 from sealdyn.studies import stribeck
 from sealdyn.studies._grooved import RootsOverSpeed, flows_over_grooves, modes, ring_of
 
-TEXT = """
+TEXT = f"""
 [shaft]
 speed = "1000 rad/s"
 [film]
-gas = "air"
-temperature = "300 K"
-viscosity = "1.8e-5 Pa*s"
-inner_radius = "51.6 mm"
-outer_radius = "61.6 mm"
-inner_pressure = "1 bar"
+{FACES_TOML}
 outer_pressure = "5 bar"
 clearance = "3 um"
-[[rotor.grooves]]
-count = 12
-depth = "6 um"
-inner_radius = "55.5 mm"
-outer_radius = "61.6 mm"
-angle = "15 deg"
-share = 0.5
-[stator]
-mass = "0.2 kg"
-transverse_inertia = "3.5e-4 kg*m^2"
-[stator.support]
-axial_stiffness = "1.64e4 N/m"
+{RINGS_TOML}
 axial_damping = "1e3 N*s/m"
-tilt_stiffness = "31 N*m/rad"
 tilt_damping = "1.4 N*m*s/rad"
 [run]
 turns = 5

@@ -87,27 +87,35 @@ def _own(name: str, row) -> list[dict]:
 
 def _narrow() -> list[dict]:
     """Force above the ambient and flow, of the limit of many grooves over the theory's."""
-    lines, r_i, r_g, r_o = [], 0.0516, 0.0555, 0.0616
-    face = GroovedFace(r_i, r_o, r_g, r_o, math.radians(15.0), 0.5, 6e-6, 3e-6)
-    ambient = 1e5 * math.pi * (r_o**2 - r_i**2)
+    lines = []
+    face = GroovedFace(0.0516, 0.0616, 0.0555, 0.0616, math.radians(15.0), 0.5, 6e-6, 3e-6)
+    ambient = 1e5 * math.pi * (face.outer_radius**2 - face.inner_radius**2)
     for name, law, viscosity, speed in (
         ("liquid", narrow_groove_liquid, 1e-3, 300.0), ("gas", narrow_groove_gas, 1.8e-5, 1000.0),
     ):  # fmt: skip
         conditions = Conditions(3e-6, viscosity, 1e5, 1e5, speed, gas=name == "gas")
-        limit, ratios = law(face, viscosity, conditions.entrainment, 1e5, 1e5), []
-        for count in COUNTS:
-            spiral = Spiral(count, r_g, r_o, face.angle, face.share, face.depth)
-            coarse, fine, order = steady_pair(spiral, r_i, r_o, conditions)
-            force = extrapolated(coarse.force - ambient, fine.force - ambient, order)[0]
-            flow = extrapolated(coarse.flows[0], fine.flows[0], order)[0]
-            ratios.append((force / (limit.force - ambient), flow / limit.flow))
-        found = np.polynomial.polynomial.polyfit(1.0 / np.array(COUNTS), ratios, len(COUNTS) - 1)[0]
+        limit = law(face, viscosity, conditions.entrainment, 1e5, 1e5)
+        found = many_over_narrow(face, conditions, limit, COUNTS)
         for quantity, known, ratio in zip(
             ("force", "outflow"), (limit.force - ambient, limit.flow), found, strict=True
         ):
             lines.append(_line(NARROW, f"many grooves, {name}", quantity, known, ratio * known,
                                abs(ratio - 1.0) <= NARROW_TOLERANCE))  # fmt: skip
     return lines
+
+
+def many_over_narrow(face: GroovedFace, conditions: Conditions, limit, counts) -> np.ndarray:
+    """Force above the pressure outside and flow, of the film over the theory's `limit`, (2,): a polynomial through so
+    many grooves as `counts` has, at 1/count = 0."""
+    ratios, ends = [], (face.inner_radius, face.outer_radius)
+    ambient = conditions.outer_pressure * math.pi * (ends[1] ** 2 - ends[0] ** 2)
+    for count in counts:
+        grooved = face.groove_inner_radius, face.groove_outer_radius, face.angle, face.share, face.depth
+        coarse, fine, order = steady_pair(Spiral(int(count), *grooved), *ends, conditions)
+        force = extrapolated(coarse.force - ambient, fine.force - ambient, order)[0]
+        flow = extrapolated(coarse.flows[0], fine.flows[0], order)[0]
+        ratios.append((force / (limit.force - ambient), flow / limit.flow))
+    return np.polynomial.polynomial.polyfit(1.0 / np.array(counts), ratios, len(counts) - 1)[0]
 
 
 def _line(source, case, quantity, known, value, agrees, remark="") -> dict:

@@ -38,10 +38,15 @@ def pattern_of(one: Grooves) -> Spiral | Boxes:
     return tee(one.count, one.depth, arms, stem, one.phase)
 
 
+def cavity_of(film) -> float | None:
+    """Pressure (Pa) at which the liquid of a `Film` table tears over grooves, None where it never does."""
+    kept = film.reynolds is not None and film.reynolds.cavitation == "none"
+    return None if kept else film.cavitation_pressure
+
+
 def conditions_of(scene, clearance: float) -> Conditions:
     """The film of a scene at its start, at a clearance (m)."""
     film, gas = coned(scene), gas_of(scene.film)
-    tears = film.reynolds is None or film.reynolds.cavitation != "none"
     slip = gas is not None and (film.gas_reynolds or GasReynolds()).slip
     return Conditions(
         clearance=clearance,
@@ -53,7 +58,7 @@ def conditions_of(scene, clearance: float) -> Conditions:
         coning=initially(film.coning),
         gas=gas is not None,
         slip=math.sqrt(0.5 * math.pi * gas.gas_constant * initially(film.temperature)) if slip else 0.0,
-        cavity=film.cavitation_pressure if tears else None,
+        cavity=cavity_of(film),
         floor=contact_thresholds(scene.contact)[0] if scene.contact else 0.0,
     )
 

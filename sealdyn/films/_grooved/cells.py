@@ -43,7 +43,7 @@ from ...scene.gas import GasReynolds, gas_of
 from ...scene.patterns import Grooves, alike_sectors, grooves_of
 from ...scene.scene import SceneError
 from .._contract import FilmUnknowns
-from .aligned import conditions_of, pattern_of
+from .aligned import cavity_of, pattern_of
 from .balance import Conditions as Aligned
 from .balance import Film as Balance
 from .balance import order as order_of_tips
@@ -85,12 +85,9 @@ def prepared(scene) -> GroovedTable:
     """The `Film` table of a scene with its grooves.  Raises SceneError where its liquid may tear: cavities are found in
     steady films only."""
     face, (one,) = grooves_of(scene)
-    if conditions_of(scene, 1.0).cavity is not None:
-        expected = (
-            "nothing where rings move: over grooves cavities are found in aligned films only (studies "
-            "equilibrium, load-support, stribeck, coefficients)"
-        )
-        raise SceneError("film.cavitation_pressure", f"{scene.film.cavitation_pressure:g} Pa", expected)
+    if (cavity := cavity_of(scene.film)) is not None:
+        expected = "nothing where rings move: over grooves cavities are found in aligned films only, as of equilibrium"
+        raise SceneError("film.cavitation_pressure", f"{cavity:g} Pa", expected)
     given = {name: value for name, value in vars(scene.film).items() if name not in ("face", "grooves", "alike")}
     return GroovedTable(**given, face=face, grooves=one, alike=alike_sectors(scene) != 1)
 

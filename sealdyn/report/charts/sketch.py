@@ -44,8 +44,8 @@ def _front(ax, run: Run, ring: str, row: dict) -> None:
     # A face for the lands, on which only what is deep is drawn.
     ax.add_patch(Annulus((0, 0), MM * outer, MM * (outer - inner), fc=RING[ring], alpha=0.75, ec=BLACK))
     ax.pcolormesh(x, y, np.where(deep[:-1, :-1], 1.0, np.nan), cmap=ListedColormap([GREY]), rasterized=True)
-    turning = _at_first(run, ring)
-    if past := turning - _at_first(run, "stator" if ring == "rotor" else "rotor"):
+    turning = _fastest(run, ring)
+    if past := turning - _fastest(run, "stator" if ring == "rotor" else "rotor"):
         ends = np.radians([65.0, 115.0])[:: 1 if past > 0.0 else -1]
         start, end = (1.1 * MM * outer * np.array([np.cos(at), np.sin(at)]) for at in ends)
         bend = 0.22 if past > 0.0 else -0.22
@@ -73,7 +73,7 @@ def _is_deep(row: dict, r, theta) -> np.ndarray:
     return deep
 
 
-def _at_first(run: Run, ring: str) -> float:
+def _fastest(run: Run, ring: str) -> float:
     """Speed of a ring's carrier (rad/s), of one that changes the largest."""
     value = (run.resolved["shaft" if ring == "rotor" else "stator"] or {}).get("speed") or 0.0
     return max(value["value"], key=abs) if isinstance(value, dict) else value
