@@ -44,8 +44,8 @@ def _front(ax, run: Run, ring: str, row: dict) -> None:
     # A face for the lands, on which only what is deep is drawn.
     ax.add_patch(Annulus((0, 0), MM * outer, MM * (outer - inner), fc=RING[ring], alpha=0.75, ec=BLACK))
     ax.pcolormesh(x, y, np.where(deep[:-1, :-1], 1.0, np.nan), cmap=ListedColormap([GREY]), rasterized=True)
-    turning = _fastest(run, ring)
-    if past := turning - _fastest(run, "stator" if ring == "rotor" else "rotor"):
+    other = "stator" if ring == "rotor" else "rotor"
+    if past := _fastest(run, ring) - _fastest(run, other):
         ends = np.radians([65.0, 115.0])[:: 1 if past > 0.0 else -1]
         start, end = (1.1 * MM * outer * np.array([np.cos(at), np.sin(at)]) for at in ends)
         bend = 0.22 if past > 0.0 else -0.22
@@ -53,7 +53,8 @@ def _front(ax, run: Run, ring: str, row: dict) -> None:
     # The other face drags its fluid against the way that this one turns past it.
     pumped = "inwards" if (row["angle"] or 0.0) * past > 0.0 else "outwards"
     pumped = pumped if past and row["shape"] == "spiral" else ""
-    words = [f"{count} {NAMES[row['shape']]}, {_length(row['depth'])} deep", pumped and f"pump {pumped}"]
+    words = [f"{count} {NAMES[row['shape']]}, {_length(row['depth'])} deep", pumped and f"pump {pumped}",
+             past and f"arrow: as seen from the {other}"]  # fmt: skip
     ax.set(xlim=(-1.2 * MM * outer, 1.2 * MM * outer), ylim=(-1.2 * MM * outer, 1.2 * MM * outer), aspect="equal",
            xticks=[], yticks=[], title=f"Face of the {ring}, to scale")  # fmt: skip
     ax.set_xlabel("\n".join(filter(None, words)), fontsize=8)
