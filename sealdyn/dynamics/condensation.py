@@ -34,6 +34,8 @@ QUADRATURE = 1e-12
 EACH = np.arange(6)
 # Sectors of which there are more than mean, cosine and sine; what those that are alike may differ by, as a share.
 LEAST_SECTORS, ALIKE = 4, 1e-9
+# Fewest sectors around which tilts about all axes are answered alike.
+EVEN = 3
 
 
 def moved_gaps(s: np.ndarray, steps: tuple[float, float, float, float]) -> np.ndarray:
@@ -172,10 +174,14 @@ class LinearFilm:
         and lies at its angle zero: mean, cosine and sine of its sectors, which are alike.
 
         **Source** derived here: cosine plus i sine of the sectors' unknowns are c' = c e^{-i speed t}, whose rates are
-        those of c less i speed c; what hangs on gaps and their rates does so at the angle zero."""
+        those of c less i speed c; what hangs on gaps and their rates does so at the angle zero.
+        **Valid** three sectors and more; of fewer the mean over a turn, c then all unknowns' share that goes with
+        g_x + i g_y, not with its conjugate."""
         from scipy.sparse import csc_array, eye_array, kron
 
         sectors, each = self.around or (1, len(self.scales))
+        if sectors < EVEN:
+            return self._mean_over_a_turn(speed)
         back = (turned := _harmonics(sectors, each, 1)).T
         by_x, by_rate = ((back @ part @ turned).tocsc() for part in (self.by_x, self.by_rate))
         # i on cosine and sine of each unknown.
@@ -183,6 +189,28 @@ class LinearFilm:
         return LinearFilm(
             (by_x - speed * by_rate @ ahead).tocsc(), by_rate, back @ self.by_gap, back @ self.by_gap_rate,
             self.force_by_x @ turned, self.force_by_gap, self.force_by_gap_rate, np.tile(self.scales[:each], 3),
+        )  # fmt: skip
+
+    def _mean_over_a_turn(self, speed: float) -> "LinearFilm":
+        from scipy.sparse import block_diag, csc_array, kron
+
+        def driven(by_gap):
+            z, a, b = by_gap.T
+            return np.concatenate([np.stack([z, 0 * a, 0 * b], 1), np.stack([0 * z, a, b], 1),
+                                   np.stack([0 * z, -b, a], 1)])  # fmt: skip
+
+        def mean(force_by_gap):
+            (_, xx, xy), (_, yx, yy) = force_by_gap[1:]
+            direct, cross = 0.5 * (xx + yy), 0.5 * (yx - xy)
+            return np.array([[force_by_gap[0, 0], 0.0, 0.0], [0.0, direct, -cross], [0.0, cross, direct]])
+
+        (f_z, f_x, f_y), turn = self.force_by_x, csc_array([[0.0, -1.0], [1.0, 0.0]])
+        nothing, x, y = 0.0 * f_z, 0.5 * f_x, 0.5 * f_y
+        around = block_diag([0.0 * self.by_rate, kron(turn, self.by_rate)])
+        return LinearFilm(
+            (block_diag([self.by_x] * 3) - speed * around).tocsc(), block_diag([self.by_rate] * 3).tocsc(),
+            driven(self.by_gap), driven(self.by_gap_rate), np.block([[f_z, nothing, nothing], [nothing, x, -y],
+            [nothing, y, x]]), mean(self.force_by_gap), mean(self.force_by_gap_rate), np.tile(self.scales, 3),
         )  # fmt: skip
 
     @cached_property

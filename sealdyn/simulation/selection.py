@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass, replace
 import numpy as np
 
 from .. import archive
+from ..dynamics.condensation import EVEN
 from ..dynamics.intervals import constant_and_slope, largest_value
 from ..dynamics.model import Model
 from ..dynamics.run_state import Caution, Concern, RunState
@@ -15,6 +16,7 @@ from ..faces.geometry import COLLAPSE, DZ, FLOOR
 from ..scenario.reader import Scenario
 from ..scenario.tables import Run
 from ..scene.gas import viscosity_of
+from ..scene.patterns import grooves_of
 from ..scene.radial import RadialScene
 from ..scene.rings import RING_NAMES
 from ..scene.scene import Scene, SceneError
@@ -79,6 +81,11 @@ def prepare_run(scenario: Scenario, allow_large: bool = True, lowest: bool = Tru
         raise SceneError(error.key, error.found, f"{error.expected}; {'; '.join(meant)}") from None
 
 
+def _uneven_grooves(scene) -> int:
+    """How many grooves a face has, of which the film's stiffness is not the same about all axes; 0 where it is."""
+    return next((row.count for row in grooves_of(scene)[1] if row.count < EVEN), 0)
+
+
 def _prepared(scenario, lowest):
     settings = scenario.run
     chosen = []
@@ -104,6 +111,9 @@ def _prepared(scenario, lowest):
         run.cautions.append(Caution(Concern.ACCURACY, sentence))
     if run.model.unknowns.faces_tilt and run.model.linear_scene().rest is None:
         sentence = "stability and stiffness are of aligned faces: no rest is found for what waves or pads press"
+        run.cautions.append(Caution(Concern.ALIGNED, sentence))
+    if run.model.unknowns.faces_tilt and (count := _uneven_grooves(scenario.scene)):
+        sentence = f"stability and stiffness are means over a turn of the {count} grooves: study coefficients has more"
         run.cautions.append(Caution(Concern.ALIGNED, sentence))
     run.watch_last_periods()
     if fastest * interval > math.pi:

@@ -18,9 +18,11 @@ from ..films._grooved.motion import (
     Motion,
     Ring,
     axial_law,
-    misalignment_answer,
+    coupled_law,
+    own_tilt,
+    relative_tilt,
     root_near,
-    runout_answer,
+    support_law,
     tilt_law,
     unstable_roots,
 )
@@ -119,6 +121,7 @@ def coefficients_over_grooves(scenario, scene, settings) -> Answer:
         "error": _errors(found, frequencies[0]),
         "least_pressure": found.least_pressure,
         "pumping": found.pumping,
+        "twice": _twice(found, frequencies[0]),
         "modes": modes(scene, found),
         "tracking": tracking(scene, found, clearance),
     }  # fmt: skip
@@ -132,6 +135,16 @@ def _matrices(found: AlignedFilm, frequency: float) -> tuple[list, list]:
     """Stiffness and damping (3, 3) at a frequency (rad/s)."""
     k, d = found.of_motion(lambda motion: np.array(motion.matrices(frequency)))[0]
     return k.tolist(), d.tolist()
+
+
+def _twice(found: AlignedFilm, frequency: float) -> dict | None:
+    """What of the tilt's dynamic stiffness 1 and 2 grooves answer at twice the speed of the pattern less the frequency
+    (rad/s): its size (N m/rad) of a whirl forward and of one backward; None of more grooves."""
+    if not found.motions[1].uneven:
+        return None
+    sizes = found.of_motion(lambda motion: np.array([motion.beside_impedance(w * 1j) for w in (frequency, -frequency)]))
+    forward, backward = np.abs(sizes[0]).tolist()
+    return {"frequency": 2.0 * found.frame - frequency, "forward": forward, "backward": backward}
 
 
 def _errors(found: AlignedFilm, frequency: float) -> dict:
@@ -197,19 +210,35 @@ def modes(scene, found: AlignedFilm) -> dict | None:
         ("axial", axial_law, ring.mass, 1.0), ("tilt_forward", tilt_law, ring.transverse_inertia, 1.0),
         ("tilt_backward", tilt_law, ring.transverse_inertia, -1.0),
     ):  # fmt: skip
+
+        def root_of(motion, law=law, inertia=inertia, whirl=whirl):
+            root = _root(law(motion, ring), inertia, whirl)
+            if not motion.uneven:
+                return root
+            around = 0.0 if law is axial_law else 1j * motion.frame
+            return root_near(_determinant(motion, ring), root - around) + around
+
         try:
-            root = found.of_motion(
-                lambda motion, law=law, inertia=inertia, whirl=whirl: _root(law(motion, ring), inertia, whirl)
-            )[0]
+            root = found.of_motion(root_of)[0]
             # Without a whirl that way, overdamped, it is another's.
             answer[name] = [root.real, root.imag] if name == "axial" or root.imag * whirl > 0.0 else None
         except ArithmeticError:
             answer[name] = None
     fine: Motion = found.motions[1]
-    for name, law, inertia in (("axial", axial_law, ring.mass), ("tilt", tilt_law, ring.transverse_inertia)):
-        answer[f"unstable_{name}"] = unstable_roots(law(fine, ring), inertia)
-    answer["stable"] = not (answer["unstable_axial"] or answer["unstable_tilt"])
-    return answer
+    if fine.uneven:
+        inertia = ring.mass * ring.transverse_inertia**2
+        growing = unstable_roots(_determinant(fine, ring), inertia, degree=6)
+        return {**answer, "unstable": growing, "stable": not growing}
+    growing = [unstable_roots(law(fine, ring), inertia) for law, inertia in
+               ((axial_law, ring.mass), (tilt_law, ring.transverse_inertia))]  # fmt: skip
+    named = dict(zip(("unstable_axial", "unstable_tilt"), growing, strict=True))
+    return {**answer, **named, "unstable": sum(growing), "stable": not any(growing)}
+
+
+def _determinant(motion, ring):
+    """Of `coupled_law`, a function of s (1/s) in the frame of the pattern."""
+    law = coupled_law(motion, ring)
+    return lambda s: complex(np.linalg.det(law(s)))
 
 
 def _root(law, inertia: float, whirl: float) -> complex:
@@ -248,8 +277,7 @@ class RootsOverSpeed:
         clearance = settle(turned, opening_law(turned))[0]
         refuse_touching(turned, clearance)
         found = modes(turned, aligned_film(turned, clearance, MANY))
-        growing = found["unstable_axial"] + found["unstable_tilt"]
-        return {"clearance": clearance, "growing": growing, **{name: found[name] for name in MOTIONS}}
+        return {"clearance": clearance, "growing": found["unstable"], **{name: found[name] for name in MOTIONS}}
 
 
 def roots_over_speed(scene, speeds, tools) -> tuple[list[dict], dict, list[str]]:
@@ -288,8 +316,9 @@ def _rows(roots, speeds, tools, words: str) -> list[dict]:
 
 def tracking(scene, found: AlignedFilm, clearance: float) -> dict | None:
     """How a stator that floats follows its rotor, by linear theory: relative misalignment (rad) `by_runout` of the
-    rotor, constant on it, `by_misalignment` of the stator, which the rotor passes, and the `largest`, their sum;
-    thinnest film over the lands `h_min` (m), where that is not negative.  None of other arrangements."""
+    rotor, constant on it, `by_misalignment` of the stator, which the rotor passes, of one groove `by_groove`, and what
+    one and two make of the first two at another frequency, `at_twice`; the `largest`, the sum of all; thinnest film
+    over the lands `h_min` (m), where that is not negative.  None of other arrangements."""
     ring = ring_of(scene)
     if ring is None or scene.stator.support is None:
         return None
@@ -297,18 +326,19 @@ def tracking(scene, found: AlignedFilm, clearance: float) -> dict | None:
     runout, misalignment = initially(scene.rotor.runout), initially(scene.stator.misalignment)
 
     def parts(motion):
-        return np.array([
-            runout_answer(motion, ring, runout, speed) - runout, misalignment_answer(motion, ring, misalignment),
-        ])  # fmt: skip
+        moments = support_law(ring, 1j * speed) * runout, support_law(ring, 0.0) * misalignment
+        answers = [relative_tilt(motion, ring, *given) for given in zip(moments, (speed, 0.0), strict=True)]
+        return np.array([*answers, (own_tilt(motion, ring), 0.0)])
 
-    by_runout, by_misalignment = np.abs(found.of_motion(parts)[0]).tolist()
-    film, largest = coned(scene), by_runout + by_misalignment
+    ahead, beside = np.abs(found.of_motion(parts)[0]).T
+    (by_runout, by_misalignment, by_groove), beside = ahead.tolist(), float(beside.sum())
+    film, largest = coned(scene), by_runout + by_misalignment + by_groove + beside
     wide = film.outer_radius - film.inner_radius
     thinnest = clearance + min(
         -largest * film.inner_radius, initially(film.coning) * wide - largest * film.outer_radius
     )
-    return {"by_runout": by_runout, "by_misalignment": by_misalignment, "largest": largest,
-            "h_min": thinnest if thinnest > 0.0 else None}  # fmt: skip
+    return {"by_runout": by_runout, "by_misalignment": by_misalignment, "by_groove": by_groove, "at_twice": beside,
+            "largest": largest, "h_min": thinnest if thinnest > 0.0 else None}  # fmt: skip
 
 
 # --- what is shown -------------------------------------------------------------------------------------
@@ -344,6 +374,10 @@ def _notes(numbers) -> list[str]:
             ends = " to ".join(in_words("frequency", w) for w in (negative[0], negative[-1]))
             notes.append(f"The film's {name} damping is negative at {len(negative)} of {len(swept['frequency'])} "
                          f"frequencies, {ends}: grooves store gas.")  # fmt: skip
+    if twice := numbers["twice"]:
+        notes.append(f"Matrices are means over a turn of the grooves, which also answer a tilt with up to "
+                     f"{in_words('tilt_stiffness', max(twice['forward'], twice['backward']))} at twice their speed "
+                     "less the tilt's own; roots and tracking have both.")  # fmt: skip
     if numbers["modes"] is None:
         notes.append("Two rings float, or one without inertia: no roots.")
     return notes

@@ -38,7 +38,9 @@ INFO = Info(
         # Over grooves.
         "leakage": "m^3/s", "mass_flow": "kg/s", "torque": "N*m", "film_force": "N", "least_pressure": "Pa",
         **dict.fromkeys(("modes/axial", "modes/tilt_forward", "modes/tilt_backward"), "1/s"),
-        **dict.fromkeys(("tracking/by_runout", "tracking/by_misalignment", "tracking/largest"), "rad"),
+        **dict.fromkeys(("tracking/by_runout", "tracking/by_misalignment", "tracking/by_groove",
+                         "tracking/at_twice", "tracking/largest"), "rad"),
+        "twice/frequency": "rad/s", "twice/forward": "N*m/rad", "twice/backward": "N*m/rad",
         "tracking/h_min": "m",
         "error": "1",
         **dict(zip(NAMES, [unit for row in STIFFNESS_UNITS + DAMPING_UNITS for unit in row], strict=True)),

@@ -15,14 +15,17 @@ from sealdyn.films import film_named
 from sealdyn.films._grooved.balance import extrapolated, order, steady
 from sealdyn.films._grooved.mesh import mesh_of
 from sealdyn.films._grooved.motion import (
+    TO_TURNS,
     Motion,
     Ring,
     axial_law,
     circle_impedance,
-    misalignment_answer,
+    coupled_law,
+    relative_tilt,
     root_near,
-    runout_answer,
+    support_law,
     tilt_law,
+    unstable_roots,
 )
 from sealdyn.scene.film import Film
 from sealdyn.scene.gas import GasReynolds
@@ -104,8 +107,8 @@ def test_answers_to_runout_and_to_misalignment():
     ring, runout, misalignment = Ring(0.2, 3.5e-4, 1.64e4, 1e3, 3e5, 50.0), 2e-5, 4e-5
 
     def relative(motion):
-        turning = abs(runout_answer(motion, ring, runout, W) - runout)
-        standing = abs(misalignment_answer(motion, ring, misalignment))
+        turning = abs(relative_tilt(motion, ring, support_law(ring, 1j * W) * runout, W)[0])
+        standing = abs(relative_tilt(motion, ring, support_law(ring, 0.0) * misalignment, 0.0)[0])
         return np.array([turning + standing, abs(turning - standing)])
 
     assert better("gas_5bar", relative) == pytest.approx([2.245e-5, 7.5773e-6], rel=4e-3)
@@ -137,15 +140,39 @@ def test_one_pitch_answers_as_the_whole_circle(pattern, conditions):
 
 
 @pytest.mark.parametrize("count", [1, 2])
-def test_one_or_two_pitches_are_refused_and_answer_on_the_circle(count):
-    found = film(replace(SPIRAL, count=count), LIQUID)
-    with pytest.raises(ValueError):
-        Motion(found)
-    z = circle_impedance(found)(0.0)
-    direct, cross = z[1, 1] - z[2, 2], z[1, 2] + z[2, 1]
-    # The axes are not alike any more, and with one pitch axial motion and tilt are not apart either.
-    assert abs(direct) + abs(cross) > 1e-2 * abs(z[1, 1])
+def test_one_or_two_pitches_answer_at_two_frequencies(count):
+    """Tilts about both axes of the pattern are not alike; with one pitch axial motion and tilt are not apart either."""
+    motion = Motion(film(replace(SPIRAL, count=count), LIQUID), W)
+    z = motion.coupled(0.0)
+    assert abs(z[1, 2]) > 1e-2 * abs(z[1, 1]) and z[2, 2] == pytest.approx(z[1, 1].conjugate(), rel=1e-12)
     assert (np.abs(z[0, 1:]).max() > 1e-4 * R_O * abs(z[0, 0])) == (count == 1)
+    assert motion.tilt_impedance(1j * W) == pytest.approx(z[1, 1], rel=1e-12)
+    assert abs(motion.beside_impedance(1j * W)) == pytest.approx(abs(z[1, 2]), rel=1e-10)
+    # A standing tilt about x, drawn in the frame of the pattern and turned back to the inertial one.
+    s, times = -1j * W, np.array([0.0, 0.4, 1.1]) / W
+    in_frame = (TO_TURNS @ motion.circle(s) @ np.array([0.0, 1.0, -1j]))[1:, None] * np.exp(s * times)
+    both = in_frame[0] + in_frame[1].conjugate()
+    expected = 2.0 * motion.tilt_impedance(0.0) + 2.0 * motion.beside_impedance(0.0) * np.exp(2j * W * times)
+    assert both * np.exp(1j * W * times) == pytest.approx(expected, rel=1e-9)
+
+
+def test_all_roots_of_ring_and_film_are_those_of_one_determinant():
+    """Of three pitches and more those of axial motion and of tilt forward and, conjugate, backward."""
+    motion = Motion(film(replace(SPIRAL, count=4), GAS, columns=4), W)
+    law = coupled_law(motion, RING)
+
+    def determinant(s):
+        return complex(np.linalg.det(law(s)))
+
+    axial, tilt = root_near(axial_law(motion, RING), -5e3 + 45e3j), root_near(tilt_law(motion, RING), -5e3 + 43e3j)
+    for root in (axial, tilt - 1j * W, (tilt - 1j * W).conjugate()):
+        assert root_near(determinant, root * 1.001) == pytest.approx(root, rel=1e-8)
+    heavy = replace(RING, mass=100.0, axial_damping=0.0)
+    thin = Motion(film(SPIRAL, replace(GAS, outer_pressure=1e5), columns=4), W)
+    law = coupled_law(thin, heavy)
+    apart = unstable_roots(axial_law(thin, heavy), heavy.mass), unstable_roots(tilt_law(thin, heavy), 3.5e-4)
+    # Each tilt that grows is two roots here, with its conjugate.
+    assert unstable_roots(determinant, 100.0 * 3.5e-4**2, degree=6) == apart[0] + 2 * apart[1] > 0
 
 
 def test_the_frame_of_plain_faces_does_not_matter():

@@ -20,7 +20,7 @@ from ...scene.patterns import Grooves, grooves_of
 from ...scene.scene import SceneError
 from .balance import COLUMNS, Conditions, NoSteadyFilm, Steady, extrapolated, order, steady
 from .mesh import mesh_of
-from .motion import FEWEST, Motion, axial_film
+from .motion import Motion, axial_film
 
 # Columns of the coarser mesh where a force is wanted at many clearances; e-folds of the clearance from node to node;
 # clearances (m) between which films are looked for, and the least where rough faces keep a film that meet.
@@ -83,13 +83,7 @@ class AlignedFilm:
 
     @cached_property
     def motions(self) -> tuple[Motion, Motion]:
-        """Small motion on both meshes.  Raises SceneError."""
-        count = self.fine.film.mesh.count
-        if count < FEWEST:
-            found = f"{count} pitches, whose stiffness in tilt is not the same about all axes"
-            raise SceneError(
-                f"{self.fine.film.conditions.face}.grooves.0.count", found, f"at least {FEWEST} grooves, as yet"
-            )
+        """Small motion on both meshes."""
         return Motion(self.coarse, self.frame), Motion(self.fine, self.frame)
 
     def of_motion(self, number):

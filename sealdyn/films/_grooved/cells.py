@@ -48,7 +48,6 @@ from .balance import Conditions as Aligned
 from .balance import Film as Balance
 from .balance import order as order_of_tips
 from .mesh import mesh_of
-from .motion import FEWEST
 
 # Block after the faces: nodes, free ones and triangles of a pitch, pitches that are computed, pitches of the circle, 1
 # of a patterned rotor and -1 of a stator, whether a gas, what slip adds to K at a temperature of 1 K over h^2 (m/s),
@@ -117,17 +116,13 @@ def cell_order(table) -> float:
 
 
 def _mesh(table):
-    """One pitch.  Raises SceneError where it has no mesh, or the circle has too few pitches."""
-    key = f"{table.face}.grooves"
-    if table.grooves.count < FEWEST:
-        found = f"{table.grooves.count} pitches, whose stiffness in tilt is not the same about all axes"
-        raise SceneError(f"{key}.0.count", found, f"at least {FEWEST} grooves, as yet")
+    """One pitch.  Raises SceneError where it has no mesh."""
     try:
         # Twice a mesh of half the columns, which is that of `halved`.
         return mesh_of(pattern_of(table.grooves), table.inner_radius, table.outer_radius,
                        0.5 * options_of(table).columns, table.times, least=1)  # fmt: skip
     except ValueError as error:
-        raise SceneError(key, str(error), "fewer grooves, or steeper ones") from None
+        raise SceneError(f"{table.face}.grooves", str(error), "fewer grooves, or steeper ones") from None
 
 
 def parameters(table, clearance: float, error: float = 1e-8) -> np.ndarray:
@@ -196,8 +191,10 @@ def links(f):
     place = of_nodes(f)[PLACE][table[:, CORNERS:SHIFTS].astype(int)].astype(int)
     ahead = table[:, SHIFTS:LINKS].astype(int)
     row, column = (np.broadcast_to(part, (len(table), 3, 3)) for part in (place[:, :, None], place[:, None, :]))
-    # One pitch has itself to both sides.
-    offset = np.broadcast_to((ahead[:, :, None] - ahead[:, None, :]) * (f[SECTORS] > 1.0), row.shape)
+    offset = np.broadcast_to(ahead[:, :, None] - ahead[:, None, :], row.shape)
+    # One pitch has itself to both sides, two have each other.
+    if f[SECTORS] < 3.0:
+        offset = offset % int(f[SECTORS])
     taken = (row >= 0) & (column >= 0)
     places, codes = [], []
     for order in ((0, 1, -1), (-1, 0, 1), (1, -1, 0)):

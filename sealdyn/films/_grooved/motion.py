@@ -14,8 +14,10 @@ Z(s) = Z'(s - i W_p), W_p the speed of the patterned face, and of Z(w) = Z(s = i
 **Source** derived here: the balances of balance.py, differentiated as they stand.  With x_i = p_i H_i held by node i,
 s (H_i dp_i + p_i dH_i) + d(leaving)/dp dp + d(leaving)/dh dh = 0.  The conjugate part of the film, with g'*, has the
 factor e^{+i pitch} and presses with no moment that goes around unless the count is 1 or 2.
-**Valid** amplitudes small against the film.  With 1 or 2 pitches to the circle only `circle_impedance` serves, whose
-coefficients are constant in the frame of the pattern and periodic in the inertial one.
+With 1 or 2 pitches M' = -A(s) g' - B(s) g'*, of the whole circle, and with 1 axial motion and tilt couple.  In the
+frame of the pattern all is constant; in the inertial one a tilt at w is answered at w by A, the mean over a turn of the
+pattern, and at 2 W_p - w by B.
+**Valid** amplitudes small against the film.
 """
 
 import cmath
@@ -30,6 +32,9 @@ from .mesh import whole_circle
 
 # Fewest pitches to the circle of which tilts around the axes answer alike.
 FEWEST = 3
+# (dz, g_x, g_y) to (dz, g, g*), of force and moments alike, and back.
+TO_TURNS = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 1j], [0.0, 1.0, -1j]])
+FROM_TURNS = np.linalg.inv(TO_TURNS)
 AXIAL, TILT = "axial", "tilt"
 
 
@@ -89,14 +94,25 @@ def axial_film(steady: Steady) -> LinearFilm:
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """Small motion about a steady film whose pattern turns at `frame` (rad/s)."""
+    """Small motion about a steady film whose pattern turns at `frame` (rad/s); of 1 or 2 pitches the mean over a turn
+    of the pattern, and `coupled` has all."""
 
     steady: Steady
     frame: float = 0.0
 
-    def __post_init__(self):
-        if self.steady.film.mesh.count < FEWEST:
-            raise ValueError(f"count: {self.steady.film.mesh.count} pitches; at least {FEWEST} answer tilts all alike")
+    @property
+    def uneven(self) -> bool:
+        """Whether tilts about different axes of the pattern are answered differently."""
+        return self.steady.film.mesh.count < FEWEST
+
+    @cached_property
+    def circle(self) -> LinearFilm:
+        """Of the whole circle."""
+        return circle_impedance(self.steady)
+
+    def coupled(self, s: complex) -> np.ndarray:
+        """Dynamic stiffness (3, 3) at s (1/s) on (dz, g', g'*) in the frame of the pattern; rows (F, M', M'*)."""
+        return TO_TURNS @ self.circle(s) @ FROM_TURNS
 
     @cached_property
     def axial(self) -> LinearFilm:
@@ -118,11 +134,18 @@ class Motion:
 
     def frame_impedance(self, s: complex) -> complex:
         """Z' (N m/rad) at s (1/s) in the frame of the pattern: M' = -Z' g'."""
+        if self.uneven:
+            return complex(self.coupled(s)[1, 1])
         return 1j * self.steady.film.mesh.count * complex(self.tilt(s)[0, 0])
 
     def tilt_impedance(self, s: complex) -> complex:
         """Z (N m/rad) at s (1/s) in the inertial frame: M = -Z g."""
         return self.frame_impedance(s - 1j * self.frame)
+
+    def beside_impedance(self, s: complex) -> complex:
+        """B (N m/rad) of a tilt e^{st} (1/s) of the inertial frame, answered at twice the pattern's speed less its own;
+        0 of 3 pitches and more."""
+        return complex(self.coupled(s - 1j * self.frame)[2, 1]).conjugate() if self.uneven else 0j
 
     def matrices(self, frequency: float) -> tuple[np.ndarray, np.ndarray]:
         """Stiffness (N/m, N m/rad) and damping (N s/m, N m s/rad), (3, 3) each, on (dz, g_x, g_y) in the inertial frame
@@ -200,25 +223,49 @@ def axial_law(motion: Motion, ring: Ring):
 def tilt_law(motion: Motion, ring: Ring):
     """I s^2 + (D - i J W) s + K - i W D_r + Z(s) (N m/rad) of a tilt e^{st} in the inertial frame, a function of s
     (1/s); D_r is the damping of a support that turns with the ring, all of it where the ring spins."""
-    whirl = 1j * ring.spin
+    return lambda s: support_law(ring, s) + motion.tilt_impedance(complex(s))
 
-    def law(s: complex) -> complex:
-        support = ring.angular_damping * (s - whirl) + ring.angular_stiffness
-        inertia = ring.transverse_inertia * s * s - whirl * ring.polar_inertia * s
-        return inertia + support + motion.tilt_impedance(complex(s))
+
+def support_law(ring: Ring, s: complex) -> complex:
+    """That of the ring on its support alone (N m/rad)."""
+    whirl = 1j * ring.spin
+    support = ring.angular_damping * (s - whirl) + ring.angular_stiffness
+    return ring.transverse_inertia * s * s - whirl * ring.polar_inertia * s + support
+
+
+def coupled_law(motion: Motion, ring: Ring):
+    """Dynamic stiffness (3, 3) of ring and film on (dz, g', g'*) in the frame of the pattern, a function of s (1/s): of
+    any count of pitches, and the roots of its determinant are all that ring and film have."""
+
+    def law(s: complex) -> np.ndarray:
+        around = 1j * motion.frame
+        axial = ring.mass * s * s + ring.axial_damping * s + ring.axial_stiffness
+        tilts = support_law(ring, s + around), support_law(ring, (s - around).conjugate()).conjugate()
+        return np.diag([axial, *tilts]) + motion.coupled(s)
 
     return law
 
 
-def runout_answer(motion: Motion, ring: Ring, runout: complex, speed: float) -> complex:
-    """Tilt of a standing ring (rad, in the frame of a rotor that turns at `speed` (rad/s), where it stays) to the
-    rotor's runout: Z(i W) g_r/(K - I W^2 + i W D + Z(i W)); of a patterned rotor Z(i W) = Z'(0)."""
-    return motion.tilt_impedance(1j * speed) * runout / tilt_law(motion, ring)(1j * speed)
+def relative_tilt(motion: Motion, ring: Ring, moment: complex, frequency: float) -> tuple[complex, complex]:
+    """Amplitudes of the gap's tilt (rad, inertial) that a moment e^{i frequency t} (N m) on the ring makes: at its own
+    frequency (rad/s), and at twice the speed of the pattern less it, 0 of 3 pitches and more.
+
+    The moment of a standing misalignment g_i of the support is K g_i at frequency 0; of a partner that is rigid and has
+    a tilt g_r at w it is (ring alone at w) g_r, against it where the partner is the rotor."""
+    if not motion.uneven:
+        return moment / tilt_law(motion, ring)(1j * frequency), 0j
+    answer = np.linalg.solve(coupled_law(motion, ring)(1j * (frequency - motion.frame)), [0.0, moment, 0.0])
+    return complex(answer[1]), complex(answer[2]).conjugate()
 
 
-def misalignment_answer(motion: Motion, ring: Ring, misalignment: complex) -> complex:
-    """Tilt of a standing ring (rad, inertial) whose support is misaligned: K g_i/(K + Z(0))."""
-    return ring.angular_stiffness * misalignment / tilt_law(motion, ring)(0.0)
+def own_tilt(motion: Motion, ring: Ring) -> complex:
+    """Tilt of the gap (rad, in the frame of the pattern, where it stays) that the aligned film of one pitch makes by
+    pressing askew; 0 of more."""
+    steady = motion.steady
+    if steady.film.mesh.count > 1:
+        return 0j
+    moment = -1j * complex(steady.film.weights(2, 1) @ steady.p)
+    return complex(np.linalg.solve(coupled_law(motion, ring)(0.0), [0.0, moment, moment.conjugate()])[1])
 
 
 # Frequencies of the count to a decade, decades below and above the pace of the ring, and the largest turn (rad) of the
@@ -226,14 +273,15 @@ def misalignment_answer(motion: Motion, ring: Ring, misalignment: complex) -> co
 PER_DECADE, BELOW, ABOVE, TURN = 8, 4, 3, 1.0
 
 
-def unstable_roots(law, inertia: float) -> int:
-    """How many zeros an analytic `law` of `axial_law`, `tilt_law` has with a growing real part.
+def unstable_roots(law, inertia: float, degree: int = 2) -> int:
+    """How many zeros an analytic `law` of `axial_law`, `tilt_law` has with a growing real part; likewise a determinant
+    of `coupled_law`.
 
-    **Source** argument principle: along the imaginary axis upwards a law that goes with inertia s^2 turns by 2 pi less
-    for each zero on its right, which adds to the 2 pi of none.
+    **Source** argument principle: along the imaginary axis upwards a law that goes with inertia s^degree turns by 2 pi
+    less for each zero on its right, which adds to the pi degree of none.
     **Valid** a film whose own motion between faces that stand still decays: it has no poles on the right."""
     stiffness = max(abs(law(0.0)), abs(law(1j)))
-    pace = max((stiffness / inertia) ** 0.5, 1.0)
+    pace = max((stiffness / inertia) ** (1.0 / degree), 1.0)
     half = pace * 10.0 ** np.linspace(-BELOW, ABOVE, (BELOW + ABOVE) * PER_DECADE + 1)
     at = [*(-half[::-1]), *half]
     values = [law(1j * w) for w in at]
@@ -247,4 +295,4 @@ def unstable_roots(law, inertia: float) -> int:
             values.insert(k + 1, law(1j * middle))
             continue
         turned, k = turned + turn, k + 1
-    return round(1.0 - turned / (2.0 * cmath.pi))
+    return round(0.5 * degree - turned / (2.0 * cmath.pi))
