@@ -81,11 +81,6 @@ def prepare_run(scenario: Scenario, allow_large: bool = True, lowest: bool = Tru
         raise SceneError(error.key, error.found, f"{error.expected}; {'; '.join(meant)}") from None
 
 
-def _uneven_grooves(scene) -> int:
-    """How many grooves a face has, of which the film's stiffness is not the same about all axes; 0 where it is."""
-    return next((row.count for row in grooves_of(scene)[1] if row.count < EVEN), 0)
-
-
 def _prepared(scenario, lowest):
     settings = scenario.run
     chosen = []
@@ -110,10 +105,10 @@ def _prepared(scenario, lowest):
         sentence = f"accuracy: errors add up over {run.memory:.3g} periods; {method} keeps {best:.1e} at best"
         run.cautions.append(Caution(Concern.ACCURACY, sentence))
     if run.model.unknowns.faces_tilt and run.model.linear_scene().rest is None:
-        sentence = "stability and stiffness are of aligned faces: no rest is found for what waves or pads press"
+        sentence = "stability and stiffness are of aligned faces: no rest is found for what their pattern presses"
         run.cautions.append(Caution(Concern.ALIGNED, sentence))
-    if run.model.unknowns.faces_tilt and (count := _uneven_grooves(scenario.scene)):
-        sentence = f"stability and stiffness are means over a turn of the {count} grooves: study coefficients has more"
+    if any(row.count < EVEN for row in grooves_of(scenario.scene)[1]):
+        sentence = "stability and stiffness are means over a turn of so few grooves: study coefficients has more"
         run.cautions.append(Caution(Concern.ALIGNED, sentence))
     run.watch_last_periods()
     if fastest * interval > math.pi:

@@ -2,47 +2,24 @@
 roots of the ring that floats, in the inertial frame."""
 
 import math
-from dataclasses import dataclass, replace
-from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
 
 from ..answers import Answer, Axis, Level, Panel, Series, Table
 from ..dynamics.equilibrium import settle
 from ..dynamics.interface import opening_law
-from ..faces.contact import contact_load_and_friction, lay_surfaces
-from ..faces.geometry import CONTACT_FORCE, CONTACT_TORQUE, DZ, GAP_STATE_SIZE, SPIN_DIFFERENCE, WEAR, face_parameters
-from ..films._grooved.aligned import MANY, AlignedFilm, aligned_film, axial_stiffness
-from ..films._grooved.motion import (
-    Motion,
-    Ring,
-    axial_law,
-    coupled_law,
-    own_tilt,
-    relative_tilt,
-    root_near,
-    support_law,
-    tilt_law,
-    unstable_roots,
-)
+from ..films._grooved.aligned import AlignedFilm, aligned_film, axial_stiffness
+from ..films._grooved.motion import own_tilt, relative_tilt, support_law
 from ..numerics.piecewise_linear import initially
 from ..quantities import in_words
 from ..scenario.settings import values_in_si
-from ..scene.contact import touch_height
-from ..scene.film import aligned_gaps, coned
+from ..scene.film import coned
 from ..scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE, density_of
-from ..scene.scene import Closing, Scene, SceneError
+from ..scene.scene import SceneError
 from ..scene.variants import frozen_at_start
+from ._grooved_roots import MOTIONS, lands, modes, refuse_touching, rings_of
 
 ERRORS = ("film_force", "leakage", "torque", "axial_stiffness", "tilt_stiffness")
-# Speeds between two of which one has more roots that grow.
-CLOSER = 5
-# Relative change of a frequency that is near enough to begin from.
-NEXT_TO = 1e-2
-MOTIONS = ("axial", "tilt_forward", "tilt_backward")
-# Step of a difference of the asperities' load, in roughnesses.
-NEAR = 1e-4
 # Frequencies without any asked, in shaft speeds.
 FREQUENCIES = np.concatenate([[0.01], np.linspace(0.5, 30.0, 60)])
 
@@ -57,29 +34,6 @@ def flows_over_grooves(scene, clearance: float, carried: float) -> dict:
     return {"friction_coefficient": abs(torque) / (carried * arm) if carried > 0.0 else None,
             "mass_flow": leakage * density_of(film), "leakage": leakage, "cavitated_fraction": found.fine.cavitated,
             "torque": torque, "stiffness": found.better(axial_stiffness)[0] + held, **wear}  # fmt: skip
-
-
-def lands(scene, clearance: float) -> tuple[float, float, dict]:
-    """Torque (N m) and axial stiffness (N/m) of the lands that touch at a clearance (m) and, if they wear, depth rate
-    of both faces (m/s, mean over the face) as `wear_rate`."""
-    if scene.contact is None:
-        return 0.0, 0.0, {}
-    face, s = face_parameters(coned(scene), clearance), np.zeros(GAP_STATE_SIZE)
-    asperities, loads, step = lay_surfaces(face, scene), [], NEAR * scene.contact.roughness
-    s[SPIN_DIFFERENCE] = initially(scene.shaft.speed) - initially(scene.stator.speed)
-    for s[DZ] in (-step, step, 0.0):
-        contact_load_and_friction(asperities, face, s)
-        loads.append(s[CONTACT_FORCE])
-    wears = scene.contact.stator_wear_coefficient or scene.contact.rotor_wear_coefficient
-    stiffness = (loads[0] - loads[1]) / (2.0 * step)
-    return float(s[CONTACT_TORQUE]), float(stiffness), {"wear_rate": float(s[WEAR])} if wears else {}
-
-
-def refuse_touching(scene, clearance: float) -> None:
-    """Raises SceneError where lands touch at a clearance (m): small motion here is of the film alone."""
-    if min(h for _, h in aligned_gaps(coned(scene), clearance)) < touch_height(scene):
-        found = f"asperities that touch at the clearance of {in_words('clearance', clearance)}"
-        raise SceneError("contact", found, "a film that lifts the lands off: small motion here is of the film alone")
 
 
 def _leakage(scene, found: AlignedFilm) -> float:
@@ -184,150 +138,21 @@ def _mapped(scene, speeds, frequencies) -> dict:
 # --- the ring ------------------------------------------------------------------------------------------
 
 
-def ring_of(scene) -> Ring | None:
-    """The ring that floats, None where both do, or where it has no inertia."""
-    floating = [name for name in ("stator", "rotor") if getattr(scene, name).support is not None]
-    if len(floating) != 1:
-        return None
-    ring = getattr(scene, floating[0])
-    spin = initially(scene.stator.speed) if floating[0] == "stator" else initially(scene.shaft.speed)
-    if not (ring.mass > 0.0 and ring.transverse_inertia > 0.0):
-        return None
-    support, (stiffness, damping) = ring.support, ring.support.tilt()
-    return Ring(ring.mass, ring.transverse_inertia, support.axial_stiffness, support.axial_damping, stiffness, damping,
-                ring.polar_inertia, spin)  # fmt: skip
-
-
-def modes(scene, found: AlignedFilm) -> dict | None:
-    """Roots (1/s) of the ring on film and support in the inertial frame, [real, imaginary]: axial, tilt forward and
-    backward, those next to the motion without damping, None of a whirl that there is not; and how many roots of each
-    motion grow, counted.  None where two rings float, or one without inertia."""
-    ring = ring_of(scene)
-    if ring is None:
-        return None
-    answer = {}
-    for name, law, inertia, whirl in (
-        ("axial", axial_law, ring.mass, 1.0), ("tilt_forward", tilt_law, ring.transverse_inertia, 1.0),
-        ("tilt_backward", tilt_law, ring.transverse_inertia, -1.0),
-    ):  # fmt: skip
-
-        def root_of(motion, law=law, inertia=inertia, whirl=whirl):
-            root = _root(law(motion, ring), inertia, whirl)
-            if not motion.uneven:
-                return root
-            around = 0.0 if law is axial_law else 1j * motion.frame
-            return root_near(_determinant(motion, ring), root - around) + around
-
-        try:
-            root = found.of_motion(root_of)[0]
-            # Without a whirl that way, overdamped, it is another's.
-            answer[name] = [root.real, root.imag] if name == "axial" or root.imag * whirl > 0.0 else None
-        except ArithmeticError:
-            answer[name] = None
-    fine: Motion = found.motions[1]
-    if fine.uneven:
-        inertia = ring.mass * ring.transverse_inertia**2
-        growing = unstable_roots(_determinant(fine, ring), inertia, degree=6)
-        return {**answer, "unstable": growing, "stable": not growing}
-    growing = [unstable_roots(law(fine, ring), inertia) for law, inertia in
-               ((axial_law, ring.mass), (tilt_law, ring.transverse_inertia))]  # fmt: skip
-    named = dict(zip(("unstable_axial", "unstable_tilt"), growing, strict=True))
-    return {**answer, **named, "unstable": sum(growing), "stable": not any(growing)}
-
-
-def _determinant(motion, ring):
-    """Of `coupled_law`, a function of s (1/s) in the frame of the pattern."""
-    law = coupled_law(motion, ring)
-    return lambda s: complex(np.linalg.det(law(s)))
-
-
-def _root(law, inertia: float, whirl: float) -> complex:
-    """The root (1/s) next to the motion of the ring without damping."""
-    w = 1.0
-    for _ in range(30):
-        # law + inertia w^2 is the stiffness that the motion meets.
-        stiffness = (law(1j * whirl * w) + inertia * w * w).real
-        before, w = w, math.sqrt(max(stiffness, 1e-3 * abs(stiffness)) / inertia)
-        if abs(w - before) < NEXT_TO * w:
-            break
-    return root_near(law, complex(0.0, whirl * w))
-
-
-@dataclass(frozen=True)
-class RootsOverSpeed:
-    """Roots (1/s) of the ring of a scene at shaft speeds, under the closing force that it has at its own one."""
-
-    scene: Scene
-
-    def __post_init__(self):
-        if ring_of(self.scene) is None:
-            raise SceneError("rotor.support", "two rings that float over grooves, or one without inertia", "one ring")
-
-    @cached_property
-    def free(self) -> Scene:
-        """The scene whose closing force is given and whose clearance follows."""
-        law = settle(self.scene, opening_law(self.scene))[1]
-        closing = Closing(balance_ratio=law.balance_ratio, spring_force=law.spring)
-        return replace(self.scene, closing=closing, film=replace(self.scene.film, clearance=None))
-
-    def __call__(self, speed: float) -> dict:
-        """`clearance` (m), roots [real, imaginary] by the names of MOTIONS, None of one that there is not, and how many
-        roots of film and ring are `growing`, counted."""
-        turned = frozen_at_start(self.free, speed=speed)
-        clearance = settle(turned, opening_law(turned))[0]
-        refuse_touching(turned, clearance)
-        found = modes(turned, aligned_film(turned, clearance, MANY))
-        return {"clearance": clearance, "growing": found["unstable"], **{name: found[name] for name in MOTIONS}}
-
-
-def roots_over_speed(scene, speeds, tools) -> tuple[list[dict], dict, list[str]]:
-    """Rows of RootsOverSpeed that have a film, with their `speed` (rad/s); roots (complex, a row each) of the motions
-    that are whirls or oscillations of their own at all of these; and what is to be said of the others."""
-    roots = RootsOverSpeed(scene)
-    # Once, not in each process.
-    _ = roots.free
-    held = _rows(roots, speeds, tools, "roots")
-    # Closer where roots begin to grow or cease to.
-    between = [np.linspace(a["speed"], b["speed"], CLOSER + 2)[1:-1] for a, b in pairwise(held)
-               if a["growing"] != b["growing"]]  # fmt: skip
-    if between:
-        held = sorted([*held, *_rows(roots, np.concatenate(between), tools, "closer")], key=lambda row: row["speed"])
-    if not held:
-        raise SceneError(
-            "shaft.speed", f"no film over grooves from {speeds[0]:g} to {speeds[-1]:g} rad/s", "other speeds"
-        )
-    known = {name: [row[name] for row in held] for name in MOTIONS}
-    notes = []
-    lost = [name.replace("_", " ") for name, values in known.items() if None in values]
-    if lost:
-        notes.append(f"Not an oscillation of its own at all speeds, and left out: {', '.join(lost)}.")
-    growing = [row["speed"] for row in held if row["growing"]]
-    if growing:
-        notes.append(f"Roots that grow, counted around the right half plane, at {len(growing)} of {len(held)} speeds, "
-                     f"the lowest {in_words('speed', growing[0])}.")  # fmt: skip
-    return held, {name: np.array(values) @ [1.0, 1j] for name, values in known.items() if None not in values}, notes
-
-
-def _rows(roots, speeds, tools, words: str) -> list[dict]:
-    """Rows of the speeds (rad/s) that have a film, with them."""
-    found = tools.map(roots, [float(w) for w in speeds], words)
-    return [{"speed": float(w), **row} for w, row in zip(speeds, found, strict=True) if "failed" not in row]
-
-
 def tracking(scene, found: AlignedFilm, clearance: float) -> dict | None:
     """How a stator that floats follows its rotor, by linear theory: relative misalignment (rad) `by_runout` of the
     rotor, constant on it, `by_misalignment` of the stator, which the rotor passes, of one groove `by_groove`, and what
     one and two make of the first two at another frequency, `at_twice`; the `largest`, the sum of all; thinnest film
     over the lands `h_min` (m), where that is not negative.  None of other arrangements."""
-    ring = ring_of(scene)
-    if ring is None or scene.stator.support is None:
+    rings = rings_of(scene)
+    if len(rings) != 1 or scene.stator.support is None:
         return None
+    (ring,) = rings
     speed = initially(scene.shaft.speed)
     runout, misalignment = initially(scene.rotor.runout), initially(scene.stator.misalignment)
 
     def parts(motion):
         moments = support_law(ring, 1j * speed) * runout, support_law(ring, 0.0) * misalignment
-        answers = [relative_tilt(motion, ring, *given) for given in zip(moments, (speed, 0.0), strict=True)]
+        answers = [relative_tilt(motion, rings, *given) for given in zip(moments, (speed, 0.0), strict=True)]
         return np.array([*answers, (own_tilt(motion, ring), 0.0)])
 
     ahead, beside = np.abs(found.of_motion(parts)[0]).T
@@ -379,7 +204,7 @@ def _notes(numbers) -> list[str]:
                      f"{in_words('tilt_stiffness', max(twice['forward'], twice['backward']))} at twice their speed "
                      "less the tilt's own; roots and tracking have both.")  # fmt: skip
     if numbers["modes"] is None:
-        notes.append("Two rings float, or one without inertia: no roots.")
+        notes.append("A ring without inertia floats: no roots.")
     return notes
 
 
@@ -396,7 +221,7 @@ def _tables(numbers) -> list[Table]:
             for w, k, d in zip(swept["frequency"], swept["stiffness"], swept["damping"], strict=True)]  # fmt: skip
     found.append(Table("matrices", columns, rows))
     if numbers["modes"] is not None:
-        roots = [(name, numbers["modes"][name]) for name in ("axial", "tilt_forward", "tilt_backward")]
+        roots = [(name, root) for name, root in numbers["modes"].items() if name.startswith(MOTIONS)]
         rows = [[name.replace("_", " "), *(root or (None, None))] for name, root in roots]
         found.append(Table("roots", [("1", "motion"), ("1/s", "growth rate"), ("frequency", "whirl")], rows))
     return found

@@ -245,7 +245,7 @@ def _moment(scene) -> str:
     """What turns aligned faces of a scene by itself, in words; "" where nothing does."""
     if not faces_tilt(scene) or film_of(scene).unknowns is None:
         return ""
-    return f"waves or pads of order {' and '.join(map(str, face_orders(scene)))} press with a moment"
+    return f"waves, pads or grooves of order {' and '.join(map(str, face_orders(scene)))} press with a moment"
 
 
 def _crew(workers: int | None, scheduler):

@@ -85,7 +85,7 @@ def run(scenario, settings, tools) -> Answer:
 def _over_grooves(scene, settings, tools) -> Answer:
     """Roots of the ring on the film of one pitch, at fewer speeds."""
     # Sparse matrices are loaded for grooves only.
-    from ._grooved import roots_over_speed
+    from ._grooved_roots import roots_over_speed
 
     top = settings.speed_to if settings.speed_to is not None else 2.0 * abs(scene.shaft.speed) or 2000.0
     points = max(3, settings.points or POINTS_OVER_GROOVES)

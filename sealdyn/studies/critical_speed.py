@@ -20,9 +20,10 @@ from ..dynamics.linearisation import moves_with_speed
 from ..dynamics.run_state import RunState
 from ..numerics.piecewise_linear import initially
 from ..quantities import in_words
+from ..scene.patterns import grooves_of
 from ..scene.rings import ROTOR, STATOR
 from ..scene.scene import Closing
-from ..scene.variants import with_values
+from ..scene.variants import frozen_at_start, with_values
 from ..simulation.selection import choose_method
 from ..simulation.stability import FASTEST, critical_speed, held_speeds, natural_frequency, speeds_held
 from ..status import Status
@@ -31,6 +32,7 @@ from . import Info
 INFO = Info(
     timed=("fms_reference", 13),
     asks="Where does the seal start to whirl, and what becomes of it?",
+    grooved=True,
     refuses=("secondary-seal",),
     units={
         **dict.fromkeys(("speed", "frequency", "bracket"), "rad/s"), **dict.fromkeys(("opening", "h_min"), "m"),
@@ -74,6 +76,11 @@ class Settings:
 def run(scenario, settings, tools) -> Answer:
     """The threshold by three independent methods, and the whirl beyond it."""
     scene = scenario.scene
+    if grooves_of(scene)[1]:
+        answer = over_grooves(scene, tools)
+        low, high = (in_words("speed", answer["growth"]["speed"][k]) for k in (0, -1))
+        notes = [*_notes(answer), f"Roots were counted from {low} to {high}, on the film of one pitch."]
+        return Answer(answer, _found(answer), _tables(answer), [_growth_panel(answer)], notes)
     model = free_model(scene, initially(scene.shaft.speed))
     if moves_with_speed(scene):
         # At every speed the same closing force, wherever it then puts the gap.
@@ -90,6 +97,22 @@ def run(scenario, settings, tools) -> Answer:
     answer["nonlinear"] = beyond(model, scene, eigenvalue, settings, tools)
     found, panels = _found(answer), [_growth_panel(answer), *_whirl_panel(answer)]
     return Answer(answer, found, _tables(answer), panels, _notes(answer))
+
+
+def over_grooves(scene, tools) -> dict:
+    """The same of faces with grooves, by the roots of the rings on the film of one pitch alone."""
+    # Sparse matrices are loaded for grooves only.
+    from ._grooved_roots import thresholds
+
+    rates, found = thresholds(frozen_at_start(scene), tools)
+    return {
+        "formula": None, "formula_reason": "grooves: no published formula", "unit": "rad/s",
+        "eigenvalue": min(found, default=None), "thresholds": found, "speeds_held": None,
+        "own_speed": abs(initially(scene.shaft.speed)),
+        "time_domain": {"value": None, "uncertainty": None, "reason": "not run over grooves"},
+        "growth": columns([{"eigenvalue": rate} for _, rate in rates], [speed for speed, _ in rates]),
+        "nonlinear": _not_followed("whirls of a film with unknowns of its own are not followed"),
+    }  # fmt: skip
 
 
 def by_formula(model) -> tuple[float | None, str]:

@@ -107,8 +107,8 @@ def test_answers_to_runout_and_to_misalignment():
     ring, runout, misalignment = Ring(0.2, 3.5e-4, 1.64e4, 1e3, 3e5, 50.0), 2e-5, 4e-5
 
     def relative(motion):
-        turning = abs(relative_tilt(motion, ring, support_law(ring, 1j * W) * runout, W)[0])
-        standing = abs(relative_tilt(motion, ring, support_law(ring, 0.0) * misalignment, 0.0)[0])
+        turning = abs(relative_tilt(motion, (ring,), support_law(ring, 1j * W) * runout, W)[0])
+        standing = abs(relative_tilt(motion, (ring,), support_law(ring, 0.0) * misalignment, 0.0)[0])
         return np.array([turning + standing, abs(turning - standing)])
 
     assert better("gas_5bar", relative) == pytest.approx([2.245e-5, 7.5773e-6], rel=4e-3)

@@ -268,7 +268,7 @@ def test_small_motion_of_a_stator_is_that_of_linear_theory():
     done = run(scene, 3, accuracy=1e-4, method="ida")
     assert done.outcome.status == "ok" and done.outcome.energy_residual < 1e-4
     motion = Motion(aligned_film(scene, GAS.clearance, 4).coarse, W)
-    turning, standing = (relative_tilt(motion, FREE, support_law(FREE, 1j * w) * tilt, w)[0]
+    turning, standing = (relative_tilt(motion, (FREE,), support_law(FREE, 1j * w) * tilt, w)[0]
                          for w, tilt in ((W, -2e-7), (0.0, 4e-7)))  # fmt: skip
     expected = turning + standing * np.exp(-1j * W * done.times)
     found, _ = relative(done, 2e-7)
@@ -282,7 +282,7 @@ def test_one_or_two_grooves_answer_a_standing_tilt_at_twice_the_speed_too(count,
     scene = seal(grooves=replace(SPIRAL, count=count, depth=depth), stator={"misalignment": 4e-7})
     done = run(scene, 3, accuracy=1e-4, method="ida")
     motion = Motion(aligned_film(scene, GAS.clearance, 4).coarse, W)
-    still, twice = relative_tilt(motion, FREE, support_law(FREE, 0.0) * 4e-7, 0.0)
+    still, twice = relative_tilt(motion, (FREE,), support_law(FREE, 0.0) * 4e-7, 0.0)
     last, own = done.times > 2.0 * 2.0 * math.pi / W, own_tilt(motion, FREE)
     around = np.exp(1j * W * done.times[last])
     found = done.q[last, 1] + 1j * done.q[last, 2]
@@ -353,7 +353,7 @@ def test_a_liquid_over_grooves_runs():
     done = run(scene, 1, accuracy=1e-5, method="ida")
     motion = Motion(steady(_mesh(prepared(scene)), conditions_of(scene, face.clearance)), 300.0)
     tilt = done.q[-1, 1] + 1j * done.q[-1, 2]
-    expected = 2e-7 + sum(relative_tilt(motion, FREE, support_law(FREE, 1j * w) * tilt, w)[0]
+    expected = 2e-7 + sum(relative_tilt(motion, (FREE,), support_law(FREE, 1j * w) * tilt, w)[0]
                           for w, tilt in ((300.0, -2e-7), (0.0, 2e-7)))  # fmt: skip
     assert abs(tilt - expected) < 0.01 * abs(expected - 2e-7)
     assert done["leakage_inner"][-1] < 0.0

@@ -42,7 +42,7 @@ from sealdyn.scene.patterns import Grooves, grooves_errors
 from sealdyn.scene.rings import Rotor, Stator, Support
 from sealdyn.scene.scene import Closing, Scene, SceneError
 from sealdyn.scene.variants import frozen_at_start
-from sealdyn.studies._grooved import RootsOverSpeed
+from sealdyn.studies._grooved_roots import RootsOverSpeed
 
 START = f"""
 [shaft]

@@ -27,7 +27,8 @@ from sealdyn.scene.rings import Rotor, Stator, Support
 from sealdyn.scene.scene import Closing, Scene, SceneError
 from sealdyn.scene.variants import counterpart, frozen_at_start
 from sealdyn.studies import stribeck
-from sealdyn.studies._grooved import RootsOverSpeed, flows_over_grooves, modes, ring_of, tracking
+from sealdyn.studies._grooved import flows_over_grooves, tracking
+from sealdyn.studies._grooved_roots import RootsOverSpeed, modes, rings_of
 
 TEXT = f"""
 [shaft]
@@ -194,8 +195,6 @@ def test_a_ring_on_grooves_the_wrong_way_round_is_unstable():
     heavy = replace(ambient, stator=replace(ambient.stator, mass=100.0, support=support))
     found, light = (modes(scene, aligned_film(scene, 3e-6, 8)) for scene in (heavy, ambient))
     assert light["stable"] and found["unstable_axial"] == 2 and found["axial"][0] > 0.0
-    both = seal(floats="stator rotor")
-    assert modes(both, aligned_film(both, 3e-6, 8)) is None
 
 
 def test_upstream_pumping():
@@ -242,7 +241,7 @@ def test_which_cells_are_used():
 
 def test_a_study_that_does_not_reckon_with_grooves_says_so(scenario, tmp_path):
     with pytest.raises(SceneError) as refused:
-        run_study("stability", scenario, tmp_path / "c.h5")
+        run_study("contact-onset", scenario, tmp_path / "c.h5")
     assert refused.value.key == "rotor.grooves"
 
 
@@ -263,23 +262,17 @@ def test_campbell_over_grooves_finds_where_a_whirl_loses_its_damping(tmp_path):
     # The closing force is kept, not the clearance.
     assert np.all(np.diff(found["clearance"]) > 0.0)
     whirl = 1j * point["whirl_ratio"] * point["speed"]
-    turned = frozen_at_start(roots.free, speed=point["speed"])
+    turned = frozen_at_start(roots.film.free, speed=point["speed"])
     clearance = settle(turned, opening_law(turned))[0]
-    law = tilt_law(aligned_film(turned, clearance, 8).motions[1], ring_of(turned))
+    law = tilt_law(aligned_film(turned, clearance, 8).motions[1], *rings_of(turned))
     assert abs(law(whirl)) < 2e-2 * abs(law(0.0))
-
-
-def test_no_roots_over_speed_of_two_rings():
-    with pytest.raises(SceneError) as refused:
-        RootsOverSpeed(seal(floats="stator rotor"))
-    assert refused.value.key == "rotor.support"
 
 
 def test_the_ring_that_floats_spins_with_its_own_speed():
     """What gyroscopic moments and the dampers of a ring that turns add to its law, by hand."""
     rotor = seal(floats="rotor")
     rotor = replace(rotor, rotor=replace(rotor.rotor, polar_inertia=6e-4))
-    ring, still = ring_of(rotor), ring_of(seal())
+    (ring,), (still,) = rings_of(rotor), rings_of(seal())
     assert (ring.spin, ring.polar_inertia, still.spin) == (1000.0, 6e-4, 0.0)
     motion, s = aligned_film(rotor, 3e-6, 8).motions[0], -200.0 + 3e4j
     more = tilt_law(motion, ring)(s) - tilt_law(motion, still)(s)

@@ -21,6 +21,7 @@ pattern, and at 2 W_p - w by B.
 """
 
 import cmath
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -213,48 +214,74 @@ def root_near(law, start: complex) -> complex:
     raise ArithmeticError(f"no root is found near {start:g}")
 
 
-def axial_law(motion: Motion, ring: Ring):
-    """m s^2 + d s + k + Z_z(s) (N/m) of an axial motion e^{st}, a function of s (1/s)."""
-    return lambda s: (
-        ring.mass * s * s + ring.axial_damping * s + ring.axial_stiffness + motion.axial_impedance(complex(s))
-    )
+def _joined(parts: list[complex]) -> tuple[complex, complex]:
+    """Of the dynamic stiffness of one or both rings alone: their product, and what of it stands beside the film."""
+    return (parts[0], 1.0) if len(parts) == 1 else (parts[0] * parts[1], parts[0] + parts[1])
 
 
-def tilt_law(motion: Motion, ring: Ring):
-    """I s^2 + (D - i J W) s + K - i W D_r + Z(s) (N m/rad) of a tilt e^{st} in the inertial frame, a function of s
-    (1/s); D_r is the damping of a support that turns with the ring, all of it where the ring spins."""
-    return lambda s: support_law(ring, s) + motion.tilt_impedance(complex(s))
+def axial_support_law(ring: Ring, s: complex) -> complex:
+    """m s^2 + d s + k (N/m) of a ring on its support alone."""
+    return ring.mass * s * s + ring.axial_damping * s + ring.axial_stiffness
 
 
 def support_law(ring: Ring, s: complex) -> complex:
-    """That of the ring on its support alone (N m/rad)."""
+    """I s^2 + (D - i J W) s + K - i W D_r (N m/rad) of a ring on its support alone that tilts e^{st} in the inertial
+    frame; D_r is the damping of a support that turns with the ring, all of it where the ring spins."""
     whirl = 1j * ring.spin
     support = ring.angular_damping * (s - whirl) + ring.angular_stiffness
     return ring.transverse_inertia * s * s - whirl * ring.polar_inertia * s + support
 
 
-def coupled_law(motion: Motion, ring: Ring):
-    """Dynamic stiffness (3, 3) of ring and film on (dz, g', g'*) in the frame of the pattern, a function of s (1/s): of
-    any count of pitches, and the roots of its determinant are all that ring and film have."""
+def axial_law(motion: Motion, *rings: Ring):
+    """A(s) + Z_z(s) (N/m) of an axial motion e^{st}, a function of s (1/s), A that of the ring alone; of two rings
+    A B + (A + B) Z_z, which is zero where they and the film between them move by themselves."""
 
-    def law(s: complex) -> np.ndarray:
-        around = 1j * motion.frame
-        axial = ring.mass * s * s + ring.axial_damping * s + ring.axial_stiffness
-        tilts = support_law(ring, s + around), support_law(ring, (s - around).conjugate()).conjugate()
-        return np.diag([axial, *tilts]) + motion.coupled(s)
+    def law(s: complex) -> complex:
+        alone, beside = _joined([axial_support_law(ring, s) for ring in rings])
+        return alone + beside * motion.axial_impedance(complex(s))
 
     return law
 
 
-def relative_tilt(motion: Motion, ring: Ring, moment: complex, frequency: float) -> tuple[complex, complex]:
-    """Amplitudes of the gap's tilt (rad, inertial) that a moment e^{i frequency t} (N m) on the ring makes: at its own
-    frequency (rad/s), and at twice the speed of the pattern less it, 0 of 3 pitches and more.
+def tilt_law(motion: Motion, *rings: Ring):
+    """Likewise A(s) + Z(s) (N m/rad) of a tilt e^{st} in the inertial frame."""
+
+    def law(s: complex) -> complex:
+        alone, beside = _joined([support_law(ring, s) for ring in rings])
+        return alone + beside * motion.tilt_impedance(complex(s))
+
+    return law
+
+
+def coupled_law(motion: Motion, *rings: Ring):
+    """Likewise (3, 3) on (dz, g', g'*) in the frame of the pattern, of any count of pitches: the roots of its
+    determinant are all that rings and film have."""
+
+    def law(s: complex) -> np.ndarray:
+        around = 1j * motion.frame
+        alone, beside = np.array([
+            _joined([axial_support_law(ring, s) for ring in rings]),
+            _joined([support_law(ring, s + around) for ring in rings]),
+            _joined([support_law(ring, (s - around).conjugate()).conjugate() for ring in rings]),
+        ]).T  # fmt: skip
+        return np.diag(alone) + beside[:, None] * motion.coupled(s)
+
+    return law
+
+
+def relative_tilt(
+    motion: Motion, rings: tuple[Ring, ...], moment: complex, frequency: float
+) -> tuple[complex, complex]:
+    """Amplitudes of the gap's tilt (rad, inertial) that a moment e^{i frequency t} (N m) on the first of the rings
+    makes: at its own frequency (rad/s), and at twice the speed of the pattern less it, 0 of 3 pitches and more.
 
     The moment of a standing misalignment g_i of the support is K g_i at frequency 0; of a partner that is rigid and has
     a tilt g_r at w it is (ring alone at w) g_r, against it where the partner is the rotor."""
+    s = 1j * frequency
+    drive = moment * math.prod(support_law(ring, s) for ring in rings[1:])
     if not motion.uneven:
-        return moment / tilt_law(motion, ring)(1j * frequency), 0j
-    answer = np.linalg.solve(coupled_law(motion, ring)(1j * (frequency - motion.frame)), [0.0, moment, 0.0])
+        return drive / tilt_law(motion, *rings)(s), 0j
+    answer = np.linalg.solve(coupled_law(motion, *rings)(s - 1j * motion.frame), [0.0, drive, 0.0])
     return complex(answer[1]), complex(answer[2]).conjugate()
 
 
@@ -275,7 +302,7 @@ PER_DECADE, BELOW, ABOVE, TURN = 8, 4, 3, 1.0
 
 def unstable_roots(law, inertia: float, degree: int = 2) -> int:
     """How many zeros an analytic `law` of `axial_law`, `tilt_law` has with a growing real part; likewise a determinant
-    of `coupled_law`.
+    of `coupled_law`, of three times their degree, 2 a ring.
 
     **Source** argument principle: along the imaginary axis upwards a law that goes with inertia s^degree turns by 2 pi
     less for each zero on its right, which adds to the pi degree of none.

@@ -23,6 +23,7 @@ from ...scenario.reader import with_values
 from ...scenario.settings import axis
 from ...scenario.tables import ScenarioFile
 from ...scene.excitation import Housing, Shaft
+from ...scene.patterns import grooves_of
 from ...scene.scene import SceneError
 from ...scene.variants import arrangement, frozen_at_start
 from ...simulation.selection import choose_method
@@ -34,12 +35,15 @@ from .grid import INERTIA_RATIO, Grid
 INFO = Info(
     timed=("fmr_reference", 4),
     asks="Where does the seal whirl by itself?",
+    grooved=True,
     refuses=("secondary-seal",),
     units={**dict.fromkeys(("growth_rate", "tilt_growth_rate", "time_domain", "uncertainty"), "1/s"), "turns": "1"},
     along=dict.fromkeys(("growth_rate", "tilt_growth_rate"), ("axes/y", "axes/x")),
 )
 # A run in time lasts until a small disturbance has grown by this much (e-folds), or decayed; turns as `pace` counts.
 GROWN, DECAYED, FEWEST, MOST = 1.5, 4.0, 4.0, 600.0
+# Values to an axis over grooves.
+FEW = 9
 # Accuracy of those runs, and the share of the eigenvalues' growth rate by which theirs may differ beside their doubt.
 ACCURACY, SHARE = 1e-7, 0.01
 
@@ -60,13 +64,17 @@ class Settings:
 def run(scenario, settings, tools) -> Answer:
     """Map, margins at the scenario's own values, and confirmed points."""
     scene = frozen_at_start(scenario.scene)
-    wanted = (settings.x or _default_x(scene), settings.y or _default_y(scene))
+    grooved = bool(grooves_of(scene)[1])
+    wanted = (settings.x or _default_x(scene), settings.y or _default_y(scene, FEW if grooved else 141))
     axes = [si_axis(scenario, words, name) for name, words in zip("xy", wanted, strict=True)]
     if axes[0]["key"] == axes[1]["key"]:
         raise ScenarioError(scenario.name, "study.stability.y", axes[1]["key"], "another key than x has")
     try:
-        grid = Grid(scenario, {a["key"]: np.array(a["values"]) for a in axes})
-        total, tilt = _one_by_one(scenario, axes, tools) if grid.model.interface.stores else grid.rates()
+        if grooved:
+            total, tilt = _over_grooves(scenario, axes, tools)
+        else:
+            grid = Grid(scenario, {a["key"]: np.array(a["values"]) for a in axes})
+            total, tilt = _one_by_one(scenario, axes, tools) if grid.model.interface.stores else grid.rates()
     except SceneError as error:
         raise ScenarioError(scenario.name, error.key, error.found, error.expected) from None
     tools.say(0.3)
@@ -76,9 +84,10 @@ def run(scenario, settings, tools) -> Answer:
         "axes": dict(zip("xy", axes, strict=True)),
         "growth_rate": _listed(total),
         "tilt_growth_rate": _listed(tilt),
-        "margins": margins(scene),
+        "margins": margins(scene, tools),
         "unconditional": unconditional(scene),
-        "confirmed": _confirmed(scenario, axes, tilt, settings.confirm, tools),
+        # A turn over grooves takes its time.
+        "confirmed": _confirmed(scenario, axes, tilt, 0 if grooved else settings.confirm, tools),
         "units": {f"confirmed/{name}": a["unit"] for name, a in zip("xy", axes, strict=True)},
     }
     found = _found(numbers["margins"], scenario.name)
@@ -139,6 +148,8 @@ def _default_x(scene) -> str:
     """From a tenth to fifteen times the scene's speed, or as far as the threshold where that is above; to three times
     the speed where there is none and no ring spins, whose inertia ratio would bring one."""
     speed = abs(scene.shaft.speed) or 1000.0
+    if grooves_of(scene)[1]:
+        return f"shaft.speed={0.3 * speed}:{3 * speed}:{FEW}"
     critical = critical_speed(Model(scene))
     if critical and critical > 14 * speed:
         return f"shaft.speed={speed / 10}:{2 * critical}:240:log"
@@ -150,14 +161,14 @@ def _spins(scene) -> bool:
     return bool(scene.rotor.support and scene.rotor.transverse_inertia > 0)
 
 
-def _default_y(scene) -> str:
+def _default_y(scene, count: int) -> str:
     """The inertia ratio where a ring spins; a stator's ratio does nothing, its support's damping does."""
     if _spins(scene):
-        return f"{INERTIA_RATIO}=0.5:4:141"
+        return f"{INERTIA_RATIO}=0.5:4:{count}"
     ring, support = ("rotor", scene.rotor.support) if scene.rotor.support else ("stator", scene.stator.support)
     name = "axial_damping" if support.radius is not None else "tilt_damping"
     present = getattr(support, name) or 0.0
-    return f"{ring}.support.{name}=0:{4 * present or 1.0}:141"
+    return f"{ring}.support.{name}=0:{4 * present or 1.0}:{count}"
 
 
 def _here(scene, key: str) -> float | None:
@@ -185,6 +196,26 @@ def _one_by_one(scenario, axes, tools) -> tuple[np.ndarray, np.ndarray]:
     return tuple(found.reshape(2, len(y["values"]), len(x["values"])))
 
 
+def _over_grooves(scenario, axes, tools) -> tuple[np.ndarray, np.ndarray]:
+    """The same by the roots of the rings on the film of one pitch, a column of the map at a time: what one film has."""
+    x, y = axes
+    points = [{"x": (x["key"], a), "y": (y["key"], y["values"])} for a in x["values"]]
+    rows = tools.map(partial(_column_over_grooves, scenario), points, "map")
+    nothing = [math.nan] * len(y["values"])
+    return tuple(np.array([row.get(name, nothing) for row in rows], float).T for name in ("total", "tilt"))
+
+
+def _column_over_grooves(scenario, point: dict) -> dict:
+    from .._grooved_roots import growth_rates
+
+    (x, a), (y, values) = point["x"], point["y"]
+    scenes = [
+        frozen_at_start(with_values(scenario, _scenario_keys(scenario.scene, {x: a, y: b})).scene) for b in values
+    ]
+    total, tilt = zip(*growth_rates(scenes), strict=True)
+    return {"total": list(total), "tilt": list(tilt)}
+
+
 def rates_of(scenario, point: dict) -> dict:
     """Growth rates (1/s) of one point of the map: `total` of all modes, `tilt` of the tilt modes."""
     keys = _scenario_keys(scenario.scene, point["values"])
@@ -195,8 +226,13 @@ def rates_of(scenario, point: dict) -> dict:
 # --- at the scenario's own values ---------------------------------------------------------------------
 
 
-def margins(scene) -> dict:
+def margins(scene, tools) -> dict:
     """Growth rate, whirl ratio and critical speed at the scenario's own values, and how far off the threshold is."""
+    if grooves_of(scene)[1]:
+        # Sparse matrices are loaded for grooves only.
+        from .._grooved_roots import margins_over_grooves
+
+        return margins_over_grooves(scene, tools)
     model = Model(scene)
     found, speed = model.linear_scene().modes(), scene.shaft.speed
     critical = critical_speed(model)
@@ -216,6 +252,8 @@ def unconditional(scene) -> dict:
     """The inertia ratio up to which a flexible rotor is stable at every speed, `c <= 1/nu`; None for other seals, and
     for a film that stores or changes with the speed, of which there is no such formula."""
     nothing = {"limit": None, "inertia_ratio": None, "holds": None}
+    if grooves_of(scene)[1]:
+        return nothing
     model = Model(scene)
     if arrangement(scene) != "FMR" or model.interface.stores or moves_with_speed(scene):
         return nothing

@@ -22,11 +22,11 @@ from ...answers import Answer, Axis, Level, Panel, Series, Table
 from ...dynamics.linearisation import moves_with_speed
 from ...quantities import in_words, reading_in
 from ...scene.contact import touch_height
-from ...scene.film import aligned_gaps, coned, coning_change
-from ...scene.gas import viscosity_of
+from ...scene.film import aligned_gaps, coning_change
+from ...scene.patterns import grooves_of
 from ...scene.rings import SMALL_TILT
 from ...scene.variants import arrangement, frozen_at_start
-from ...simulation.stability import critical_speed, held_speeds
+from ...simulation.stability import held_speeds
 from ...units import Speed
 from .. import Info
 from .arrangements import (
@@ -35,15 +35,16 @@ from .arrangements import (
     SEALS,
     Arrangement,
     curves,
+    groups,
     phases_apart,
     points_in_time,
     seals_of,
-    tilting,
 )
 
 INFO = Info(
     timed=("fmr_reference", 3),
     asks="How much misalignment reaches the film?",
+    grooved=True,
     refuses=("secondary-seal",),
     units={
         "speed": "rad/s", "turns": "1", "groups/seal_parameter": "Pa", "from": "rad/s", "to": "rad/s", "pairs": "1",
@@ -57,6 +58,8 @@ INFO = Info(
 )  # fmt: skip
 # Relative difference below which two arrangements transmit the same; how well the end of stability is located.
 SAME, LOCATED = 1e-9, 1e-9
+# Numbers of speeds without any asked.
+POINTS, POINTS_OVER_GROOVES = 301, 25
 # Share of the fastest speed below which stability ends by rounding: rings at rest may have a neutral mode.
 AT_REST = 1e-6
 NAMES = {
@@ -84,8 +87,8 @@ class Settings:
     """Lowest speed."""
     speed_to: Speed | None = None
     """Highest speed; without it three times the scenario's, no more than a film holds."""
-    points: int = 301
-    """Number of speeds."""
+    points: int | None = None
+    """Number of speeds (301; over grooves 25)."""
     unit: Literal["rad/s", "rpm"] = "rad/s"
     """Of the figure's axis."""
     time_points: int = 12
@@ -100,13 +103,19 @@ def run(scenario, settings, tools) -> Answer:
     """Transmissibilities of the three arrangements by three independent methods, the speeds at which they cross, which
     is best where, the table and Green's groups."""
     seals = seals_of(scenario.scene)
-    own_speed = abs(frozen_at_start(scenario.scene).shaft.speed)
+    own_speed, grooved = abs(frozen_at_start(scenario.scene).shaft.speed), bool(grooves_of(scenario.scene)[1])
     top, held = settings.speed_to, None
     if top is None:
         asked = 3 * own_speed or 3000.0
-        top = min(held_speeds(seal.model, seal.model.start, 1e-3 * asked, asked)[1] for seal in seals.values())
+        top = (
+            asked
+            if grooved
+            else min(held_speeds(seal.model, seal.model.start, 1e-3 * asked, asked)[1] for seal in seals.values())
+        )
         held = [settings.speed_from, top] if top < asked else None
-    speeds = np.linspace(settings.speed_from, top, max(2, settings.points))
+    points = max(2, settings.points or (POINTS_OVER_GROOVES if grooved else POINTS))
+    # At rest grooves do not pump.
+    speeds = np.linspace(settings.speed_from or (top / points if grooved else 0.0), top, points)
     by_formula = all(seal.formula_holds(w) for seal in seals.values() for w in (speeds[-1], 0.5 * speeds[-1]))
     numbers = {"speed": speeds.tolist(), "unit": settings.unit, "arrangement": arrangement(scenario.scene)}
     numbers["stator_speed"] = frozen_at_start(scenario.scene).stator.speed
@@ -134,8 +143,9 @@ def run(scenario, settings, tools) -> Answer:
                                      numbers["stability_ends"])}
         for pair in map(list, combinations(SEALS, 2))
     ]  # fmt: skip
-    numbers["time_domain"] = points_in_time(scenario, settings, speeds, own_speed, tools)
-    numbers["groups"] = groups(seals, own_speed)
+    # A turn over grooves takes its time, and Green's groups are of faces without.
+    numbers["time_domain"] = [] if grooved else points_in_time(scenario, settings, speeds, own_speed, tools)
+    numbers["groups"] = {} if grooved else groups(seals, own_speed)
     numbers["table"] = table(seals, own_speed, by_formula, numbers["time_domain"]) if own_speed else []
     with reading_in({"rad/s": "rpm"} if settings.unit == "rpm" else {}):
         tables, far = _tables(seals, numbers)
@@ -224,7 +234,7 @@ def _apart(answer) -> tuple[float, float]:
     return tuple(max(far[seal, name] for seal in SEALS for name in names) for names in (QUANTITIES, PHASES))
 
 
-# --- the table, and Green's groups -------------------------------------------------------------------
+# --- the table --------------------------------------------------------------------------------------
 
 
 def table(seals: dict[str, Arrangement], speed: float, by_formula: bool, rows: list[dict]) -> list[dict]:
@@ -275,7 +285,7 @@ def _critical_speed(seal: Arrangement, road: str, by_formula: bool) -> float | N
     if road == "time_domain" or (road == "formula" and not by_formula):
         return None
     if road == "linear_algebra":
-        return critical_speed(seal.model)
+        return seal.critical_speed()
     if seal.name == "fmsr" or moves_with_speed(seal.scene):
         return None
     numbers = seal.tilt_numbers(1.0)
@@ -284,31 +294,6 @@ def _critical_speed(seal: Arrangement, road: str, by_formula: bool) -> float | N
         return (cf.fmr_critical_speed if seal.name == "fmr" else cf.fms_critical_speed)(**numbers)
     except ValueError:
         return None
-
-
-def groups(seals: dict[str, Arrangement], speed: float) -> dict:
-    """Green's dimensionless groups at a speed (rad/s), {} at rest: those of faces and film, and of the rings on their
-    supports, `rotor` and `stator`, as they float in the FMSR seal; what each is: closed_form/green_1989.py."""
-    if speed == 0.0:
-        return {}
-    seal = seals["fmsr"]
-    film = coned(seal.model.at_speed(speed).scene, float, speed)
-    face = dict(
-        speed=speed,
-        viscosity=viscosity_of(film),
-        inner_radius=film.inner_radius,
-        outer_radius=film.outer_radius,
-        clearance=film.clearance,
-    )
-    stiffness, damping = (float(v) for v in seal.film_numbers(speed))
-    drop = film.outer_pressure - film.inner_pressure
-    coefficients = {"film_stiffness": stiffness, "film_damping": damping}
-    found = cf.film_groups(**face, coning=film.coning, pressure_drop=drop, **coefficients)
-    for name, ring in (("rotor", seal.scene.rotor), ("stator", seal.scene.stator)):
-        found[name] = cf.ring_groups(**face, **tilting(ring)._asdict())
-        if not np.isfinite(found[name]["inertia_ratio"]):
-            found[name]["inertia_ratio"] = None
-    return found
 
 
 # --- what is shown ------------------------------------------------------------------------------------
@@ -334,6 +319,8 @@ def _notes(seals, numbers) -> list[str]:
     said = ["FMSR is this scene with the same ring and support on the other side too."]
     if numbers["arrangement"] == "FMSR":
         said = ["Both rings float: FMR and FMS are this scene with the other ring held rigid."]
+    if face := grooves_of(seals["fmr"].scene)[0]:
+        said.append(f"The grooves stay in the face of the {face}, whichever ring floats.")
     if numbers["speeds_held"]:
         said.append(f"Beyond {in_words('speed', numbers['speeds_held'][1])} no film holds the closing force.")
     for name in SEALS:
@@ -342,7 +329,7 @@ def _notes(seals, numbers) -> list[str]:
     if not numbers["formula_holds"]:
         said.append("No closed form for this film or a turning stator: lines are linear algebra.")
     film = seals["fmr"].scene.film
-    if seals["fmr"].model.interface.name != "linear" or film.coefficients != "green":
+    if not face and (seals["fmr"].model.interface.name != "linear" or film.coefficients != "green"):
         said.append('Green\'s Fig. 8 has the coefficients of the narrow seal (film.model = "linear").')
     failed = [row for row in numbers["time_domain"] if "failed" in row]
     if failed:

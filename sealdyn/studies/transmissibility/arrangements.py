@@ -16,11 +16,14 @@ from ...dynamics.run_state import RunState
 from ...dynamics.signals import signals
 from ...quantities import in_words
 from ...scene.excitation import Housing
-from ...scene.film import Coefficients, aligned_gaps, coning_change
-from ...scene.rings import ROTOR, STATOR
+from ...scene.film import Coefficients, aligned_gaps, coned, coning_change
+from ...scene.gas import viscosity_of
+from ...scene.patterns import grooves_of
+from ...scene.rings import RING_NAMES, ROTOR, STATOR
 from ...scene.scene import Initial, Scene
 from ...scene.variants import frozen_at_start, with_both_flexible_rings, with_single_flexible_ring
 from ...simulation.selection import choose_method
+from ...simulation.stability import critical_speed
 from ...solvers.contract import Recorder, Status
 from ...solvers.integrate import solve
 
@@ -28,13 +31,19 @@ SEALS = ("fmr", "fms", "fmsr")
 FORMULAS = {"fmr": (cf.fmr_static, cf.fmr_dynamic), "fms": (cf.fms_static, cf.fms_dynamic)}
 
 
+def arranged(scene: Scene, name: str) -> Scene:
+    """A scene as one arrangement (of SEALS); grooves stay in the face that has them, whichever ring floats."""
+    found = with_both_flexible_rings(scene) if name == "fmsr" else with_single_flexible_ring(scene, name.upper())
+    grooves = {ring: replace(getattr(found, ring), grooves=getattr(scene, ring).grooves) for ring in RING_NAMES}
+    return replace(found, **grooves)
+
+
 class Arrangement:
     """One arrangement (of SEALS) of the scenario's seal: its linear answers at any shaft speed (rad/s)."""
 
     def __init__(self, scene: Scene, name: str):
-        both = name == "fmsr"
         self.name = name
-        self.scene = with_both_flexible_rings(scene) if both else with_single_flexible_ring(scene, name.upper())
+        self.scene = arranged(scene, name)
         self.model = Model(self.scene)
         self.stator_speed = scene.stator.speed
 
@@ -88,6 +97,10 @@ class Arrangement:
         """Growth rate (1/s) of the least damped tilt mode; 0 within its uncertainty."""
         return modes.growth([mode for mode in self.linear(speed).modes() if mode.kind == "tilt"])
 
+    def critical_speed(self) -> float | None:
+        """The seal's critical speed (rad/s)."""
+        return critical_speed(self.model)
+
     def film_numbers(self, speed) -> tuple[np.ndarray, np.ndarray]:
         """Tilt stiffness (N m/rad) and tilt damping (N m s/rad) of the film at a speed (rad/s, number or array)."""
         films = [(s.film_k[1, 1], s.film_d[1, 1]) for s in map(self.linear, np.atleast_1d(speed))]
@@ -134,7 +147,37 @@ def seals_of(scene: Scene) -> dict[str, Arrangement]:
         scene = frozen_at_start(scene, clearance=Model(scene).clearance)
     quiet = replace(scene, housing=Housing(), initial=Initial(), shaft=replace(scene.shaft, whirl=[], motion=None))
     quiet = replace(quiet, rotor=replace(quiet.rotor, axial_runout=[]))
+    if grooves_of(scene)[1]:
+        # Sparse matrices are loaded for grooves only.
+        from .over_grooves import seals_over_grooves
+
+        return seals_over_grooves(quiet)
     return {name: Arrangement(quiet, name) for name in SEALS}
+
+
+def groups(seals: dict[str, Arrangement], speed: float) -> dict:
+    """Green's dimensionless groups at a speed (rad/s), {} at rest: those of faces and film, and of the rings on their
+    supports, `rotor` and `stator`, as they float in the FMSR seal; what each is: closed_form/green_1989.py."""
+    if speed == 0.0:
+        return {}
+    seal = seals["fmsr"]
+    film = coned(seal.model.at_speed(speed).scene, float, speed)
+    face = dict(
+        speed=speed,
+        viscosity=viscosity_of(film),
+        inner_radius=film.inner_radius,
+        outer_radius=film.outer_radius,
+        clearance=film.clearance,
+    )
+    stiffness, damping = (float(v) for v in seal.film_numbers(speed))
+    drop = film.outer_pressure - film.inner_pressure
+    coefficients = {"film_stiffness": stiffness, "film_damping": damping}
+    found = cf.film_groups(**face, coning=film.coning, pressure_drop=drop, **coefficients)
+    for name, ring in (("rotor", seal.scene.rotor), ("stator", seal.scene.stator)):
+        found[name] = cf.ring_groups(**face, **tilting(ring)._asdict())
+        if not np.isfinite(found[name]["inertia_ratio"]):
+            found[name]["inertia_ratio"] = None
+    return found
 
 
 QUANTITIES = ("static", "dynamic", "total")
