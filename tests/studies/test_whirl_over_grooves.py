@@ -20,7 +20,8 @@ from sealdyn.scene.scene import Scene
 from sealdyn.scene.variants import frozen_at_start
 from sealdyn.studies import _grooved_roots
 from sealdyn.studies._grooved_roots import RootsOverSpeed, modes
-from sealdyn.studies.transmissibility.arrangements import SEALS, Arrangement, seals_of
+from sealdyn.studies.transmissibility.arrangements import SEALS, Arrangement
+from sealdyn.studies.transmissibility.over_grooves import seals_over_grooves
 
 SUPPORT = Support(axial_stiffness=1.64e4, axial_damping=1e3, tilt_stiffness=31.0, tilt_damping=1.4)
 RING = dict(mass=0.2, transverse_inertia=2e-3, polar_inertia=5e-4, support=SUPPORT)
@@ -66,7 +67,7 @@ turns = 5
 def test_arrangements_over_grooves_are_those_of_harmonic_balance(scenario):
     """Of the run's whole circle, at the scenario's own speed; two rings, between which dampers that turn whirl beyond
     twice their natural frequency."""
-    seals = seals_of(scenario.scene)
+    seals = seals_over_grooves(scenario.scene)
     for name in SEALS:
         found, expected = seals[name].relative_tilts(1000.0), Arrangement.relative_tilts(seals[name], 1000.0)
         assert np.abs(found) == pytest.approx(np.abs(expected), rel=6e-2)
@@ -107,7 +108,7 @@ def test_the_critical_speed_of_a_heavy_ring(monkeypatch, tmp_path):
 
 def test_two_rings_have_twice_the_roots(scenario):
     """Between them, and together, where the film is not strained: the supports' own."""
-    scene = seals_of(scenario.scene)["fmsr"].scene
+    scene = seals_over_grooves(scenario.scene)["fmsr"].scene
     found = modes(scene, aligned_film(scene, 3e-6, 8))
     assert len([name for name in found if name.startswith(("axial", "tilt"))]) == 6
     assert abs(found["axial_together"][1]) < 1e-3 * abs(found["axial"][1])

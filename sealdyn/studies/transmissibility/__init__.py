@@ -102,8 +102,8 @@ class Settings:
 def run(scenario, settings, tools) -> Answer:
     """Transmissibilities of the three arrangements by three independent methods, the speeds at which they cross, which
     is best where, the table and Green's groups."""
-    seals = seals_of(scenario.scene)
     own_speed, grooved = abs(frozen_at_start(scenario.scene).shaft.speed), bool(grooves_of(scenario.scene)[1])
+    seals = _seals(scenario.scene, grooved)
     top, held = settings.speed_to, None
     if top is None:
         asked = 3 * own_speed or 3000.0
@@ -151,6 +151,15 @@ def run(scenario, settings, tools) -> Answer:
         tables, far = _tables(seals, numbers)
         notes = _notes(seals, numbers) + far
         return Answer(numbers, _found(numbers), tables, _panels(numbers), notes)
+
+
+def _seals(scene, grooved: bool) -> dict[str, Arrangement]:
+    if not grooved:
+        return seals_of(scene)
+    # Sparse matrices are loaded for grooves only.
+    from .over_grooves import seals_over_grooves
+
+    return dict(seals_over_grooves(scene))
 
 
 # --- which is best ------------------------------------------------------------------------------------

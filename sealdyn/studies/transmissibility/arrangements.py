@@ -18,7 +18,6 @@ from ...quantities import in_words
 from ...scene.excitation import Housing
 from ...scene.film import Coefficients, aligned_gaps, coned, coning_change
 from ...scene.gas import viscosity_of
-from ...scene.patterns import grooves_of
 from ...scene.rings import RING_NAMES, ROTOR, STATOR
 from ...scene.scene import Initial, Scene
 from ...scene.variants import frozen_at_start, with_both_flexible_rings, with_single_flexible_ring
@@ -139,20 +138,19 @@ def tilting(ring) -> cf.TiltingRing:
 
 
 def seals_of(scene: Scene) -> dict[str, Arrangement]:
-    """The arrangements {"fmr": ..., "fms": ..., "fmsr": ...} of the scene's seal, nothing imposed, clearance kept, or
-    the closing force of heated faces."""
+    """The arrangements {"fmr": ..., "fms": ..., "fmsr": ...} of the scene's seal, as `quiet`."""
+    scene = quiet(scene)
+    return {name: Arrangement(scene, name) for name in SEALS}
+
+
+def quiet(scene: Scene) -> Scene:
+    """A scene at its start with nothing imposed, clearance kept, or the closing force of heated faces."""
     scene = frozen_at_start(scene)
     if scene.film.heat is None:
         # That of heated faces follows the speed, under the same closing force.
         scene = frozen_at_start(scene, clearance=Model(scene).clearance)
-    quiet = replace(scene, housing=Housing(), initial=Initial(), shaft=replace(scene.shaft, whirl=[], motion=None))
-    quiet = replace(quiet, rotor=replace(quiet.rotor, axial_runout=[]))
-    if grooves_of(scene)[1]:
-        # Sparse matrices are loaded for grooves only.
-        from .over_grooves import seals_over_grooves
-
-        return seals_over_grooves(quiet)
-    return {name: Arrangement(quiet, name) for name in SEALS}
+    scene = replace(scene, housing=Housing(), initial=Initial(), shaft=replace(scene.shaft, whirl=[], motion=None))
+    return replace(scene, rotor=replace(scene.rotor, axial_runout=[]))
 
 
 def groups(seals: dict[str, Arrangement], speed: float) -> dict:

@@ -9,7 +9,7 @@ from ...films._grooved.motion import relative_tilt, support_law
 from ...scene.scene import Scene
 from ...scene.variants import frozen_at_start
 from .._grooved_roots import FilmOverSpeed, RootsOverSpeed, rings_of
-from .arrangements import SEALS, Arrangement
+from .arrangements import SEALS, Arrangement, quiet
 
 
 class OverGrooves(Arrangement):
@@ -65,6 +65,7 @@ class OverGrooves(Arrangement):
 
 
 def seals_over_grooves(scene: Scene) -> dict[str, OverGrooves]:
-    """The arrangements by their names in SEALS, on one film."""
+    """The arrangements of a scene, as of `seals_of`, on one film."""
+    scene = quiet(scene)
     film = FilmOverSpeed(scene)
     return {name: OverGrooves(scene, name, film) for name in SEALS}
