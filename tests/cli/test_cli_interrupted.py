@@ -282,16 +282,16 @@ def test_a_run_is_interrupted_while_it_is_done_once_more(tmp_path):
 
 @pytest.mark.slow
 def test_killed_at_random_instants(tmp_path, unbroken):
-    """One run killed four times, each time continued; the archive is readable after every kill.  More kills, of ten
+    """One run killed three times, each time continued; the archive is readable after every kill.  More kills, of ten
     scenes: tests/benchmark/attack/continues.py."""
     archive, chance = tmp_path / "outputs" / "fmr_reference.h5", random.Random(1989)
     reached = [0]
-    for kill in range(4):
+    for kill in range(3):
         process = started("run", REFERENCE, *LONG, "--no-plot", *["--continue"] * (reached[-1] > 0), cwd=tmp_path)
         # One of them while the program takes over, the others while it writes.
-        if kill != 2:
+        if kill != 1:
             until(lambda: rows(partial_path(archive)) > reached[-1], process)
-        time.sleep(chance.uniform(0.0, 1.0 if kill == 2 else 0.1))
+        time.sleep(chance.uniform(0.0, 1.0 if kill == 1 else 0.1))
         assert process.poll() is None, f"done before kill {kill}: {process.communicate()}"
         process.kill()
         process.communicate()
@@ -305,7 +305,7 @@ def test_killed_at_random_instants(tmp_path, unbroken):
                 assert len(values) == shown["rows"] and (values == values).all()
             at, pressures = (field(partial_path(archive), name) for name in ("field_time", "pressure"))
             assert at[-1] <= values[-1] and (pressures == pressures).all()
-    assert reached == sorted(reached) and len(set(reached)) > 3
+    assert reached == sorted(reached) and len(set(reached)) > 2
     assert sealdyn("run", REFERENCE, *LONG, "--no-plot", "--continue", cwd=tmp_path).code == 0
     agree(archive, unbroken)
 

@@ -281,7 +281,7 @@ def test_a_misaligned_seal_wears_by_averages_over_turns(tmp_path):
 def test_halving_the_step_of_a_scene_that_moves_changes_less_than_the_accuracy():
     scene = read("rub", "contact.stator_wear_coefficient=1e-17 1/Pa").scene
     radius = np.linspace(R_I, R_O, 7)
-    ends = [history(scene, 0.5, 1e-2, step, radius)[1][-1][0].depth for step in (0.4, 0.2)]
+    ends = [history(scene, 0.4, 1e-2, step, radius)[1][-1][0].depth for step in (0.4, 0.2)]
     assert 0.0 < np.max(np.abs(ends[0] - ends[1])) < 1e-2 * ROUGH
     assert np.max(ends[0]) > 0.5 * ROUGH
 
