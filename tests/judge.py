@@ -52,7 +52,7 @@ class Instants:
         pass
 
     def all(self):
-        return np.concatenate(self.columns)
+        return np.concatenate(self.columns) if self.columns else np.empty((0, 0))
 
 
 def instants(random, run, count=240):

@@ -80,7 +80,7 @@ def _over_grooves(scene, clearance: float) -> tuple[dict, list[str]]:
 
     film, (face, (one,)) = aligned_film(frozen_at_start(scene), clearance), grooves_of(scene)
     condition, deep = film.fine.film.conditions, float(film.fine.film.h.max())
-    sliding = abs(condition.relative_speed) * one.outer_radius
+    sliding = abs(condition.relative_speed) * one.reach[1]
     reynolds = couette_reynolds(highest_density(scene.film), condition.viscosity, sliding, deep)
     rough = [f"perhaps turbulent: Couette Reynolds number {reynolds:.0f} in the grooves"] if reynolds > LAMINAR else []
     known = {"face": face, "pumping": film.pumping, "depth_over_film": one.depth / clearance}

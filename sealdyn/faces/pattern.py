@@ -125,17 +125,35 @@ class Dimples:
     depth: float
     phase: float = 0.0
 
-    def depth_at(self, r, phi) -> np.ndarray:
-        """Depth (m) at radii r (m) and angles phi (rad), which broadcast; neighbours that overlap are not deeper."""
+    def level(self, r, phi) -> np.ndarray:
+        """Below 0 in a dimple, 0 on its edge and above 0 on the lands, at radii r (m) and angles phi (rad), which
+        broadcast."""
         pitch = 2.0 * math.pi / self.count
         across = self.radius * np.log(np.divide(r, self.radius))
         cos, sin = math.cos(self.angle), math.sin(self.angle)
-        off, inside = _off_middle(phi - self.phase, self.count), False
+        off, least = _off_middle(phi - self.phase, self.count), np.inf
         for turned in (-pitch, 0.0, pitch):
             along = self.radius * (off + turned)
             x, y = along * cos + across * sin, across * cos - along * sin
-            inside = inside | ((2.0 * x / self.length) ** 2 + (2.0 * y / self.width) ** 2 < 1.0)
-        return np.where(inside, self.depth, 0.0)
+            least = np.minimum(least, np.hypot(2.0 * x / self.length, 2.0 * y / self.width))
+        return least - 1.0
+
+    def depth_at(self, r, phi) -> np.ndarray:
+        """Depth (m) at radii r (m) and angles phi (rad), which broadcast; neighbours that overlap are not deeper."""
+        return np.where(self.level(r, phi) < 0.0, self.depth, 0.0)
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        """Radii (m) between which the dimples lie."""
+        sides = self.length * math.sin(self.angle), self.width * math.cos(self.angle)
+        half = 0.5 * math.hypot(*sides) / self.radius
+        return self.radius * math.exp(-half), self.radius * math.exp(half)
+
+    @property
+    def half_angle(self) -> float:
+        """Half the angle (rad) that a dimple takes around the circle."""
+        sides = self.length * math.cos(self.angle), self.width * math.sin(self.angle)
+        return 0.5 * math.hypot(*sides) / self.radius
 
 
 Pattern = Spiral | Boxes | Dimples

@@ -12,10 +12,11 @@ common, the greatest common divisor, and a moment is what repeats itself once.
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Literal
 
 from ..numerics.piecewise_linear import points
-from ..units import Angle, Height, Radius
+from ..units import Angle, Height, Length, Radius
 from . import Strict
 from .contact import contact_errors, contact_thresholds
 
@@ -23,6 +24,11 @@ from .contact import contact_errors, contact_thresholds
 MOST_WAVES = 16
 # Most columns of triangles to a pitch: a run takes minutes with half of them.
 MOST_COLUMNS = 48
+# Bands of one share of land each, over dimples.
+BANDS = 16
+# Keys of a row of grooves that it has if it is one of dimples, or if it is not.
+PARTS = {"inner_radius": False, "outer_radius": False, "share": False,
+         "radius": True, "length": True, "width": True}  # fmt: skip
 # Finer than a hundredth of the circle a surface is rough or grooved, not wavy.
 HIGHEST_ORDER = 100
 
@@ -82,29 +88,52 @@ class Grooves(Strict):
 
     Spiral: r = inner_radius exp(theta tan(angle)) along an edge, straight in (ln r, theta).  Tee: arms between the two
     radii over `share` of the pitch, and a stem outwards from their middle, with radial sides.  Pad: a pocket between
-    the two radii over `share` of the pitch, with radial sides (Rayleigh steps, hydropads)."""
+    the two radii over `share` of the pitch, with radial sides (Rayleigh steps, hydropads).  Dimples: ellipses around
+    the radius of their centres."""
 
     count: int
     """Grooves to the circle."""
     depth: Height
     """By which the film is thicker in them; `h_min` and touch take them for land."""
-    inner_radius: Radius
-    """Where they begin; that of the face where they open there."""
-    outer_radius: Radius
-    """Where they end, or the arms of a tee."""
-    share: float
-    """Share of the pitch that is groove, arms or pad."""
-    shape: Literal["spiral", "tee", "pad"] = "spiral"
-    """Spiral grooves, arms with a stem, or pads (radial sides)."""
+    inner_radius: Radius | None = None
+    """Where they begin; that of the face where they open there.  Not of dimples."""
+    outer_radius: Radius | None = None
+    """Where they end, or the arms of a tee.  Not of dimples."""
+    share: float | None = None
+    """Share of the pitch that is groove, arms or pad.  Not of dimples."""
+    shape: Literal["spiral", "tee", "pad", "dimples"] = "spiral"
+    """Spiral grooves, arms with a stem, pads (radial sides), or elliptic dimples."""
     angle: Angle | None = None
-    """Of a spiral to the circle: positive where the groove's radius grows with theta, the sense of a positive shaft
-    speed."""
+    """Of a spiral, or of the length of a dimple (0), to the circle: positive where the radius grows with theta, the
+    sense of a positive shaft speed."""
     stem_outer_radius: Radius | None = None
     """Of a tee: where its stem ends."""
     stem_share: float | None = None
     """Of a tee: share of the pitch that is stem."""
+    radius: Radius | None = None
+    """Of dimples: that of their centres."""
+    length: Length | None = None
+    """Of dimples: whole axis at the `angle` to the circle."""
+    width: Length | None = None
+    """Of dimples: whole axis across."""
     phase: Angle = 0.0
     """Angle of the middle of the first groove at its inner radius, at the angle zero of its ring."""
+
+    @property
+    def ellipse(self) -> tuple[float, float, float]:
+        """Of dimples a, b and c (1/m^2) of a x^2 + 2 b x y + c y^2 = 1 on their edge, x along the circle, y across."""
+        cos, sin = math.cos(self.angle or 0.0), math.sin(self.angle or 0.0)
+        along, across = (2.0 / self.length) ** 2, (2.0 / self.width) ** 2
+        return (along * cos**2 + across * sin**2, (along - across) * cos * sin, along * sin**2 + across * cos**2)
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        """Radii (m) between which they lie, a tee's without its stem."""
+        if self.shape != "dimples":
+            return self.inner_radius, self.outer_radius
+        a, b, c = self.ellipse
+        half = math.sqrt(a / (a * c - b * b)) / self.radius
+        return self.radius * math.exp(-half), self.radius * math.exp(half)
 
 
 def grooves_of(scene) -> tuple[str, tuple[Grooves, ...]]:
@@ -119,6 +148,8 @@ def land_shares(scene) -> tuple[list[float], list[float]] | None:
     """Radii (m) of a scene's face at which the share of land on a circle changes, from edge to edge of the face, and
     that share between each and the next; None without grooves."""
     for one in grooves_of(scene)[1]:
+        if one.shape == "dimples":
+            return _land_of_dimples(scene.film, one)
         ends = [scene.film.inner_radius, one.inner_radius, one.outer_radius, scene.film.outer_radius]
         shares = [1.0, 1.0 - one.share, 1.0]
         if one.shape == "tee":
@@ -127,6 +158,17 @@ def land_shares(scene) -> tuple[list[float], list[float]] | None:
         wide = [n for n in range(len(shares)) if ends[n + 1] > ends[n]]
         return [ends[wide[0]], *(ends[n + 1] for n in wide)], [shares[n] for n in wide]
     return None
+
+
+def _land_of_dimples(film, one: Grooves) -> tuple[list[float], list[float]]:
+    (low, high), (a, b, c) = one.reach, one.ellipse
+    radii = [low + (high - low) * k / BANDS for k in range(BANDS + 1)]
+    lands = []
+    for inner, outer in pairwise(radii):
+        y = one.radius * math.log(0.5 * (inner + outer) / one.radius)
+        chord = 2.0 * math.sqrt(max((b * y) ** 2 - a * (c * y * y - 1.0), 0.0)) / a
+        lands.append(max(1.0 - chord * one.count / (2.0 * math.pi * one.radius), 0.0))
+    return [film.inner_radius, *radii, film.outer_radius], [1.0, *lands, 1.0]
 
 
 def grooves_errors(scene) -> list[tuple[str, str, str]]:
@@ -148,6 +190,16 @@ def _shape_errors(one: Grooves, film) -> list[tuple[str, str, str]]:
         bad.append(("count", f"{one.count}", "a whole number from 1"))
     if not 0.0 <= one.depth < math.inf:
         bad.append(("depth", f"{one.depth:g} m", "a finite depth >= 0, by which the film is thicker in a groove"))
+    dimples = one.shape == "dimples"
+    for part, of_dimples in PARTS.items():
+        if (getattr(one, part) is not None) != (dimples == of_dimples):
+            here = f'shape = "{one.shape}"'
+            bad.append((part, "nothing" if dimples == of_dimples else "a value",
+                        f"a value, with {here}" if dimples == of_dimples else f"nothing, with {here}"))  # fmt: skip
+    if bad:
+        return bad
+    if dimples:
+        return _dimple_errors(one, film)
     if not film.inner_radius <= one.inner_radius < one.outer_radius <= film.outer_radius:
         found = f"{one.inner_radius:g} to {one.outer_radius:g} m"
         expected = f"radii that increase, between {film.inner_radius:g} and {film.outer_radius:g} m, those of the face"
@@ -173,6 +225,20 @@ def _shape_errors(one: Grooves, film) -> list[tuple[str, str, str]]:
             "negative the other way round (papers that say 165 deg mean -15 deg, others count from the radius)"
         )
         bad.append(("angle", found, expected))
+    return bad
+
+
+def _dimple_errors(one: Grooves, film) -> list[tuple[str, str, str]]:
+    bad = [(part, f"{getattr(one, part):g} m", "a length above 0") for part in ("length", "width")
+           if not getattr(one, part) > 0.0]  # fmt: skip
+    bad += [(part, "a value", 'nothing, or shape = "tee"') for part in ("stem_outer_radius", "stem_share")
+            if getattr(one, part) is not None]  # fmt: skip
+    if bad:
+        return bad
+    low, high = one.reach
+    if not film.inner_radius < low < high < film.outer_radius:
+        expected = f"dimples between the edges of the face, {film.inner_radius:g} and {film.outer_radius:g} m"
+        bad.append(("radius", f"{one.radius:g} m, with dimples from {low:.5g} to {high:.5g} m", expected))
     return bad
 
 

@@ -11,7 +11,7 @@ import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from ...faces.pattern import Box, Boxes, Spiral, pumps, tee
+from ...faces.pattern import Box, Boxes, Dimples, Pattern, Spiral, pumps, tee
 from ...numerics.piecewise_linear import initially
 from ...scene.contact import contact_thresholds
 from ...scene.film import coned
@@ -19,7 +19,7 @@ from ...scene.gas import GasReynolds, gas_of, viscosity_of
 from ...scene.patterns import Grooves, grooves_of
 from ...scene.scene import SceneError
 from .balance import COLUMNS, Conditions, NoSteadyFilm, Steady, extrapolated, order, steady
-from .mesh import mesh_of
+from .dimpled_mesh import mesh_on
 from .motion import Motion, axial_film
 
 # Columns of the coarser mesh where a force is wanted at many clearances; e-folds of the clearance from node to node;
@@ -27,10 +27,12 @@ from .motion import Motion, axial_film
 MANY, STRIDE, THINNEST, WIDEST, MET = 8, 0.1, 2e-8, 2e-3, 5e-10
 
 
-def pattern_of(one: Grooves) -> Spiral | Boxes:
+def pattern_of(one: Grooves) -> Pattern:
     """The pattern of a row of grooves."""
     if one.shape == "spiral":
         return Spiral(one.count, one.inner_radius, one.outer_radius, one.angle, one.share, one.depth, one.phase)
+    if one.shape == "dimples":
+        return Dimples(one.count, one.radius, one.length, one.width, one.angle or 0.0, one.depth, one.phase)
     arms = Box(one.inner_radius, one.outer_radius, one.share)
     if one.shape == "pad":
         return Boxes(one.count, one.depth, (arms,), one.phase)
@@ -107,7 +109,7 @@ def meshes_of(scene, columns: int):
     many nodes."""
     (face, (one,)), film = grooves_of(scene), scene.film
     try:
-        return [mesh_of(pattern_of(one), film.inner_radius, film.outer_radius, columns, times) for times in (1, 2)]
+        return [mesh_on(pattern_of(one), film.inner_radius, film.outer_radius, columns, times) for times in (1, 2)]
     except ValueError as error:
         raise SceneError(f"{face}.grooves", str(error), "fewer grooves, or steeper ones") from None
 

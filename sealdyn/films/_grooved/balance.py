@@ -26,7 +26,8 @@ import numpy as np
 from scipy.sparse import csc_array
 from scipy.sparse.linalg import splu
 
-from .mesh import Mesh, mesh_of, tips_of
+from .dimpled_mesh import mesh_on
+from .mesh import Mesh, tips_of
 
 
 @dataclass(frozen=True)
@@ -345,6 +346,6 @@ def extrapolated(coarse, fine, power: float):
 
 def steady_pair(pattern, inner_radius: float, outer_radius: float, conditions: Conditions, columns: int = COLUMNS):
     """The steady film with so many columns to the pitch and with twice as many, and the order of their error."""
-    meshes = [mesh_of(pattern, inner_radius, outer_radius, columns, times) for times in (1, 2)]
+    meshes = [mesh_on(pattern, inner_radius, outer_radius, columns, times) for times in (1, 2)]
     coarse, fine = (steady(mesh, conditions) for mesh in meshes)
     return coarse, fine, order(fine.film)

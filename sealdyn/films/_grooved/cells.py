@@ -47,7 +47,7 @@ from .aligned import cavity_of, pattern_of
 from .balance import Conditions as Aligned
 from .balance import Film as Balance
 from .balance import order as order_of_tips
-from .mesh import mesh_of
+from .dimpled_mesh import mesh_on
 
 # Block after the faces: nodes, free ones and triangles of a pitch, pitches that are computed, pitches of the circle, 1
 # of a patterned rotor and -1 of a stator, whether a gas, what slip adds to K at a temperature of 1 K over h^2 (m/s),
@@ -119,7 +119,7 @@ def _mesh(table):
     """One pitch.  Raises SceneError where it has no mesh."""
     try:
         # Twice a mesh of half the columns, which is that of `halved`.
-        return mesh_of(pattern_of(table.grooves), table.inner_radius, table.outer_radius,
+        return mesh_on(pattern_of(table.grooves), table.inner_radius, table.outer_radius,
                        0.5 * options_of(table).columns, table.times, least=1)  # fmt: skip
     except ValueError as error:
         raise SceneError(f"{table.face}.grooves", str(error), "fewer grooves, or steeper ones") from None

@@ -15,7 +15,7 @@ groove filling the angle b there
 and the longest edges of the triangles that touch one are bisected several times.
 **Source** derived here: harmonic functions cos (or sin) of lambda theta from the bisector on both sides, of equal value
 and equal kappa d/dtheta at the edges; at an open end sin(lambda theta) from the given edge.
-**Valid** one pattern that reaches at most to both edges of the face; ellipses have no such mesh.
+**Valid** one pattern that reaches at most to both edges of the face; of ellipses dimpled_mesh.py.
 """
 
 import math
@@ -43,7 +43,8 @@ class Mesh:
 
     `u` = ln r and `phi` (rad) of the nodes, (nodes,); `corners` and `shifts` (triangles, 3): the node at each corner,
     counter-clockwise in (u, phi), and by how many sectors it lies ahead; `depth` (triangles,) of the pattern (m);
-    `inner`, `outer` (nodes,) bool: on an edge of the face; `count` of sectors to the circle."""
+    `inner`, `outer` (nodes,) bool: on an edge of the face; `count` of sectors to the circle; `bends`: where the
+    pattern's edge bends there is a tip, not a curve."""
 
     u: np.ndarray
     phi: np.ndarray
@@ -53,6 +54,7 @@ class Mesh:
     inner: np.ndarray
     outer: np.ndarray
     count: int
+    bends: bool = True
 
     @property
     def pitch(self) -> float:
@@ -166,7 +168,7 @@ def whole_circle(mesh: Mesh) -> Mesh:
     corners = (mesh.corners + nodes * (place % mesh.count)).reshape(-1, 3)
     phi = (mesh.phi + mesh.pitch * sector[:, None]).ravel()
     u, depth, inner, outer = (np.tile(part, mesh.count) for part in (mesh.u, mesh.depth, mesh.inner, mesh.outer))
-    return Mesh(u, phi, corners, (place // mesh.count).reshape(-1, 3), depth, inner, outer, 1)
+    return Mesh(u, phi, corners, (place // mesh.count).reshape(-1, 3), depth, inner, outer, 1, mesh.bends)
 
 
 def _bisected(mesh: Mesh, tips: list[int]) -> Mesh:
@@ -259,6 +261,8 @@ class Tip:
 
 def tips_of(mesh: Mesh) -> list[Tip]:
     """Where the pattern's edges bend or end."""
+    if not mesh.bends:
+        return []
     u, phi, nodes = mesh.corner_u, mesh.corner_phi, len(mesh.u)
     after = np.stack([np.roll(u, -1, 1) - u, np.roll(phi, -1, 1) - phi])
     before = np.stack([np.roll(u, 1, 1) - u, np.roll(phi, 1, 1) - phi])

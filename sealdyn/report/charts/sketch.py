@@ -17,7 +17,7 @@ COIL = np.array([0, 0, 1, -1, 1, -1, 1, -1, 1, -1, 1, 0, 0])
 RADII = 61
 # Radii of a face from the front, and angles to a pitch; what its grooves are called.
 ACROSS, AROUND = 121, 90
-NAMES = {"spiral": "spiral grooves", "tee": "T-grooves", "pad": "pads"}
+NAMES = {"spiral": "spiral grooves", "tee": "T-grooves", "pad": "pads", "dimples": "dimples"}
 
 
 @look()
@@ -65,7 +65,13 @@ def _front(ax, run: Run, ring: str, row: dict) -> None:
 
 def _is_deep(row: dict, r, theta) -> np.ndarray:
     """Whether a face with a row of grooves is deeper at radii r (m) and angles theta (rad), which broadcast."""
-    pitch, low, high = 2.0 * np.pi / row["count"], row["inner_radius"], row["outer_radius"]
+    pitch = 2.0 * np.pi / row["count"]
+    if row["shape"] == "dimples":
+        off = np.mod(theta - row["phase"] + 0.5 * pitch, pitch) - 0.5 * pitch
+        x, y, angle = row["radius"] * off, row["radius"] * np.log(r / row["radius"]), row["angle"] or 0.0
+        along, across = x * np.cos(angle) + y * np.sin(angle), y * np.cos(angle) - x * np.sin(angle)
+        return np.hypot(2.0 * along / row["length"], 2.0 * across / row["width"]) < 1.0
+    low, high = row["inner_radius"], row["outer_radius"]
     bend = np.log(r / low) / np.tan(row["angle"]) if row["shape"] == "spiral" else 0.0
     share = np.abs(np.mod((theta - row["phase"] - bend) / pitch + 0.5, 1.0) - 0.5) * 2.0
     deep = (r >= low) & (r <= high) & (share <= row["share"])
