@@ -18,6 +18,7 @@ SHIPPED = [pytest.param(path, marks=MARKS.get(path.stem, ())) for path in sorted
 COARSER = {
     "upstream_pumping": {"film.reynolds.columns": 4, "run.turns": 1},
     "dry_gas_seal": {"film.gas_reynolds.columns": 4, "run.turns": 1, "run.accuracy": 0.05},
+    "turning_pads": {"film.gas_reynolds.columns": 8, "run.turns": 1, "run.accuracy": 0.1},
     "dry_gas_start": {"film.gas_reynolds.columns": 6},
     "lebeck_n6": {"film.reynolds.cells_r": 6, "film.reynolds.cells_theta": 270},
     "lebeck_n3": {"film.reynolds.cells_r": 6, "film.reynolds.cells_theta": 135},
