@@ -17,6 +17,8 @@ from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 
+from .extensions import digest_of, is_outside
+
 PACKAGE = Path(__file__).parent
 # Rooms and files in which kernels stand, and all that these import.
 SOURCES = (
@@ -105,11 +107,13 @@ def kept_kernels() -> list[Path]:
 
 
 class KernelLocator:
-    """Where numba keeps a kernel of `SOURCES`; other functions are left to numba."""
+    """Where numba keeps a kernel of `SOURCES`, or of a file from outside; other functions are left to numba."""
 
     def __init__(self, function, file: str):
-        self._py_file = file
-        place = ".".join(Path(file).relative_to(PACKAGE).parts[:-1])
+        self._py_file, path = file, Path(file)
+        # One from outside by its own source besides: the folder's name has that of this package alone.
+        ours = path.is_relative_to(PACKAGE)
+        place = ".".join(path.relative_to(PACKAGE).parts[:-1]) if ours else f"outside-{digest_of(path)}"
         self._name = f"{place}-{function.__code__.co_firstlineno}"
 
     @classmethod
@@ -117,7 +121,7 @@ class KernelLocator:
         """A locator of a function of this package's kernels, or None."""
         path = Path(py_file)
         ours = any(path.is_relative_to(PACKAGE / source) for source in SOURCES)
-        return cls(py_func, py_file) if ours else None
+        return cls(py_func, py_file) if ours or is_outside(path) else None
 
     def ensure_cache_path(self):
         """The folder stands."""

@@ -2,7 +2,8 @@
 
 A file `films/NAME.py`, or `films/NAME/film.py` of a folder, ends in `FILM = Film(...)`.  Before one is chosen only its
 name, fidelity, fluids and whether it comes on request are read: of a folder from `OFFER` in its `__init__.py`, so that
-kernels of films that are not chosen are neither loaded nor compiled.
+kernels of films that are not chosen are neither loaded nor compiled.  Films from outside (extensions.py) are chosen by
+their name alone.
 """
 
 import importlib
@@ -10,6 +11,7 @@ import pkgutil
 from dataclasses import replace
 from functools import cache
 
+from ..extensions import folders, in_folders, installed
 from ..numerics.piecewise_linear import points
 from ..scene.film import profile_errors
 from ..scene.patterns import grooves_of, turning_waves, waves_of, waviness_errors
@@ -25,11 +27,20 @@ def film_named(name: str, table=None, rough: bool = False) -> Film:
     return film.rough if rough and film.rough else film
 
 
-# These three are all that knows where films come from.
+# These four are all that knows where films come from.
+_OWN = tuple(__path__)
+__path__ = [*_OWN, *folders("films")]
+
+
 @cache
+def own_film_names() -> list[str]:
+    """Names of the films of this package, sorted."""
+    return sorted(m.name for m in pkgutil.iter_modules(_OWN) if not m.name.startswith("_"))
+
+
 def all_film_names() -> list[str]:
-    """Names of all films, sorted."""
-    return sorted(m.name for m in pkgutil.iter_modules(__path__) if not m.name.startswith("_"))
+    """Names of all films, those from outside too, sorted."""
+    return sorted({*own_film_names(), *in_folders("films"), *installed("films")})
 
 
 @cache
@@ -41,7 +52,8 @@ def _offer(name: str) -> Offer | Film:
 
 def _outside(name: str):
     """The file of a film, or the `__init__` of its folder, which offers it before all of it is loaded."""
-    return importlib.import_module(f"{__name__}.{name}")
+    elsewhere = name not in own_film_names() and name not in in_folders("films")
+    return importlib.import_module(installed("films")[name] if elsewhere else f"{__name__}.{name}")
 
 
 @cache
@@ -71,7 +83,8 @@ def _takes_fluid(film: Film | Offer, table) -> bool:
 def film_names(table=None, waves=()) -> list[str]:
     """Names of the films that can take the faces and the fluid of a `Film` table (None: plain cones) with these waves
     (Waviness), sorted, without those that are another one of them once more."""
-    offers = [_offer(name) for name in all_film_names()]
+    asked = [table.model] if table is not None and table.model != "auto" else []
+    offers = [_offer(name) for name in sorted({*own_film_names(), *asked})]
     # What nobody asks for is not even loaded, nor what generalises a film that will do.
     if table is not None:
         offers = [o for o in offers if _takes_fluid(o, table) and (table.model == o.name or not o.only_on_request)]

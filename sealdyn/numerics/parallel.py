@@ -28,19 +28,21 @@ from uuid import uuid4
 import numpy as np
 
 from .. import __version__
+from ..extensions import all_digests
 from .interruption import one_thread, serve, stop_children
 
 
 def content_keys(function, points: list) -> list[str]:
     """SHA-256 (hexadecimal) of what decides the row of `function(point)`, for each of the points: the version of this
-    package, the function and all it is bound to, the point.
+    package, what comes from outside it, the function and all it is bound to, the point.
 
     `function` stands in a module, or is a `partial` of one that does; dataclasses bound to it count by the fields that
     compare.  The name of an archive stands for its content.  Raises TypeError for what is neither data nor a
     function.
     """
-    evaluated = _plain(function)
-    texts = (json.dumps([__version__, evaluated, _plain(point)], sort_keys=True) for point in points)
+    evaluated, outside = _plain(function), all_digests()
+    made_by = [__version__, outside] if outside else [__version__]
+    texts = (json.dumps([*made_by, evaluated, _plain(point)], sort_keys=True) for point in points)
     return [hashlib.sha256(text.encode()).hexdigest() for text in texts]
 
 

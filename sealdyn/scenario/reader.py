@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any, Self
 
 from ..answers import toml_text
+from ..extensions import digest
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene import variants
 from ..scene.application import Application, RadialApplication
@@ -168,9 +169,25 @@ def _of_archive(path: Path, overrides: Iterable[str]) -> Scenario:
     name = str(info.get("name", path.stem))
     asked = {key_and_words(override, name)[0] for override in overrides}
     held = held if isinstance(held, dict) else {}
+    if not asked & {"film", "film.model"}:
+        _same_outside(info.get("outside"), name)
     scenario = parse_scenario(str(info["scenario"]), name, given, held=held, asked=asked)
     foreign = scenario.run.start.endswith(".h5") and not asked & {"run", "run.start"}
     return dataclasses.replace(scenario, foreign_start=scenario.run.start if foreign else "")
+
+
+def _same_outside(held: Any, name: str) -> None:
+    """Raises ScenarioError where what an archive was made with comes from outside and is gone, or is another."""
+    for place, made in held.items() if isinstance(held, dict) else ():
+        room, _, called = str(place).partition("/")
+        if room != "films" or (today := digest(room, called)) == made:
+            continue
+        found = f'"{called}", of another source ({today}) than the archive\'s ({made})'
+        expected = f"the film that the archive was made with, or --set film.model={called}, where today's is meant"
+        if today is None:
+            found = f'"{called}", which is neither installed nor on SEALDYN_PATH'
+            expected = f"the film that the archive was made with (source {made})"
+        raise ScenarioError(name, "film.model", found, expected)
 
 
 def _must_be_readable(path):

@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, TypeAdapter, ValidationError
 
-from ..films import all_film_names, film_of
+from ..films import all_film_names, film_of, own_film_names
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene import Strict
 from ..scene.application import Application, RadialApplication, application_errors
@@ -196,7 +196,8 @@ def film_choices() -> list[str]:
 
 
 def _check_film_name(name: str) -> None:
-    if name not in film_choices():
+    # What is installed beside this package is asked for other names only: that takes its time.
+    if name not in ("auto", *own_film_names()) and name not in film_choices():
         near = [choice for choice in film_choices() if name and choice.startswith(f"{name}_")]
         near = near or spelled_like(name, film_choices())
         expected = "one of " + ", ".join(f'"{m}"' for m in film_choices())

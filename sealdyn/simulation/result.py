@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, Any
 
 from .. import __version__
 from ..archive import open_archive
+from ..extensions import digest
+from ..films import own_film_names
 from ..kernel_cache import solvers_digest
 
 if TYPE_CHECKING:
@@ -39,7 +41,15 @@ def libraries() -> dict[str, str]:
 def provenance(scenario) -> dict[str, Any]:
     """What every archive says of how it was made: versions, and of the scenario name, question and overrides."""
     return {"version": __version__, "solvers": solvers_digest(), "libraries": libraries(), "name": scenario.name,
-            "question": scenario.question, "overrides": list(scenario.overrides)}  # fmt: skip
+            "question": scenario.question, "overrides": list(scenario.overrides),
+            **({"outside": outside} if (outside := _outside(scenario)) else {})}  # fmt: skip
+
+
+def _outside(scenario) -> dict[str, str]:
+    """Digest of the source of a scenario's film where that comes from outside."""
+    name = getattr(scenario.scene.film, "model", "") if hasattr(scenario.scene, "film") else ""
+    found = digest("films", name) if name not in own_film_names() else None
+    return {f"films/{name}": found} if found else {}
 
 
 @dataclass(frozen=True)

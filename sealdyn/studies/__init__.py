@@ -23,6 +23,11 @@ import pkgutil
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from ..extensions import folders, installed
+
+_OWN = tuple(__path__)
+__path__ = [*_OWN, *folders("studies")]
+
 
 @dataclass(frozen=True)
 class Info:
@@ -54,5 +59,12 @@ class Info:
 
 
 def study_names() -> list[str]:
-    """Names of the studies there are, hyphenated."""
-    return sorted(m.name.replace("_", "-") for m in pkgutil.iter_modules(__path__) if m.name[0] != "_")
+    """Names of the studies there are, those from outside too (extensions.py), hyphenated."""
+    here = {m.name for m in pkgutil.iter_modules(__path__) if m.name[0] != "_"}
+    return sorted(name.replace("_", "-") for name in here | set(installed("studies")))
+
+
+def study_module(name: str) -> str:
+    """Import path of a study called `name` (underscores)."""
+    here = {m.name for m in pkgutil.iter_modules(__path__)}
+    return f"{__name__}.{name}" if name in here else installed("studies")[name]

@@ -62,7 +62,7 @@ def journal_of(out: Path) -> Path:
 
 def study_module(name: str):
     """The study `name` (underscored)."""
-    return importlib.import_module(f"{studies.__name__}.{name}")
+    return importlib.import_module(studies.study_module(name))
 
 
 def study_info(name: str) -> Info:

@@ -8,31 +8,32 @@ import subprocess
 import sys
 from pathlib import Path
 
+import h5py
 import pytest
 
 ROOT = Path(__file__).parents[2]
 FILM, STUDY = "films/table.py", "studies/largest_tilt.py"
 
 
-# Kernels of a copy are compiled anew.
-pytestmark = pytest.mark.slow
-
-
 @pytest.fixture(scope="module")
 def house(tmp_path_factory):
-    """A copy of the package with the film and the study of the page, and the environment that finds it."""
+    """A folder with the film and the study of the page, and the environment that finds them."""
     folder = tmp_path_factory.mktemp("house")
-    shutil.copytree(ROOT / "sealdyn", folder / "sealdyn", ignore=shutil.ignore_patterns("__pycache__"))
     study, film = re.findall(r"^```python\n(.*?)^```$", (ROOT / "sealdyn" / "README.md").read_text(), re.M | re.S)
-    (folder / "sealdyn" / FILM).write_text(film)
-    (folder / "sealdyn" / STUDY).write_text(study)
-    return folder, {**os.environ, "PYTHONPATH": str(folder)}
+    for name, text in ((FILM, film), (STUDY, study)):
+        (folder / name).parent.mkdir()
+        (folder / name).write_text(text)
+    return folder, {**os.environ, "SEALDYN_PATH": str(folder)}
+
+
+def begun(house, *words, **environment):
+    folder, found = house
+    line = [sys.executable, "-m", "sealdyn.cli", *words, "--json", "--no-plot"]
+    return subprocess.run(line, cwd=folder, env={**found, **environment}, capture_output=True, text=True)
 
 
 def answer(house, *words):
-    folder, environment = house
-    line = [sys.executable, "-m", "sealdyn.cli", *words, "--json", "--no-plot"]
-    done = subprocess.run(line, cwd=folder, env=environment, capture_output=True, text=True)
+    done = begun(house, *words)
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
 
@@ -42,6 +43,44 @@ def test_the_film_by_a_table(house):
     found = answer(house, "run", scenario, "--set", "film.model=table", "--set", "run.turns=5", "--out", "a.h5")
     assert found["status"] == "ok" and found["film"]["axial_stiffness"] == pytest.approx(2e7, rel=1e-6)
     assert found["leakage"]["mean"] is None and found["friction"]["power"] is None
+    again = answer(house, "run", "a.h5", "--out", "again.h5")
+    assert again["film"] == found["film"]
+
+
+def test_a_film_from_outside_is_named_where_it_is_gone_or_another(house):
+    """Its digest is kept, nothing that is executed."""
+    folder, _ = house
+    scenario = str(ROOT / "scenarios" / "fms_reference.toml")
+    film = ("--set", "film.model=table", "--set", "run.turns=2")
+    answer(house, "run", scenario, *film, "--out", "kept.h5")
+    with h5py.File(folder / "kept.h5") as file:
+        made = json.loads(file.attrs["outside"])["films/table"]
+    gone = json.loads(begun(house, "run", "kept.h5", SEALDYN_PATH="").stdout)
+    assert gone["status"] == "invalid" and "[film] model" in gone["message"] and made in gone["message"]
+    near = json.loads(begun(house, "run", scenario, "--set", "film.model=tabel").stdout)
+    assert "table" in near["message"]
+    other = folder / "other"
+    shutil.copytree(folder / "films", other / "films", ignore=shutil.ignore_patterns("__pycache__"))
+    with (other / FILM).open("a") as source:
+        source.write("\n# Measured anew.\n")
+    changed = begun(house, "run", "kept.h5", SEALDYN_PATH=str(other))
+    assert json.loads(changed.stdout)["status"] == "invalid" and made in changed.stdout
+    taken = begun(house, "run", "kept.h5", "--set", "film.model=table", "--out", "c.h5", SEALDYN_PATH=str(other))
+    assert taken.returncode == 0, taken.stderr
+
+
+def test_names_of_the_package_are_taken(house):
+    """By no file outside, and "auto" chooses none from there."""
+    folder, _ = house
+    other = folder / "taken"
+    (other / "films").mkdir(parents=True)
+    (other / "films" / "radial.py").write_text("raise ValueError('never read')\n")
+    shutil.copy(folder / FILM, other / FILM)
+    scenario = str(ROOT / "scenarios" / "fms_reference.toml")
+    for model in ("radial", "auto"):
+        words = ("run", scenario, "--set", f"film.model={model}", "--set", "run.turns=2", "--out", "d.h5")
+        found = json.loads(begun(house, *words, SEALDYN_PATH=str(other)).stdout)
+        assert found["status"] == "ok" and found["model"]["film"] in ("radial", "linear")
 
 
 def test_the_study_of_the_tilt(house):
