@@ -16,7 +16,9 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from .analysis.desk import check, compare, design_rules, review, validate
     from .archive import ArchiveError, open_archive
+    from .report.charts.animation import animate
     from .scenario.errors import ScenarioError
     from .scenario.reader import Scenario, read_scenario
     from .scenario.templates import example, examples
@@ -24,7 +26,7 @@ if TYPE_CHECKING:
     from .simulation.result import Result
     from .simulation.run import RunEnded, evaluate, run
     from .simulation.simulate import simulate
-    from .studies._runner import Answer, run_study, study
+    from .studies._runner import Answer, list_studies, run_study, schema, study
 
 __version__ = "0.1.0"
 __all__ = [
@@ -34,22 +36,32 @@ __all__ = [
     "RunEnded",
     "Scenario",
     "ScenarioError",
+    "animate",
+    "check",
+    "compare",
+    "design_rules",
     "evaluate",
     "example",
     "examples",
+    "list_studies",
     "open_archive",
     "read_scenario",
+    "review",
     "run",
     "run_study",
+    "schema",
     "simulate",
     "simulate_many",
     "study",
     "sweep",
+    "validate",
 ]
 
 # Where each name stands; loaded on first use, so that `sealdyn --help` answers at once.
 _PLACES = {
+    "analysis.desk": ("check", "compare", "design_rules", "review", "validate"),
     "archive": ("ArchiveError", "open_archive"),
+    "report.charts.animation": ("animate",),
     "scenario.errors": ("ScenarioError",),
     "scenario.reader": ("Scenario", "read_scenario"),
     "scenario.templates": ("example", "examples"),
@@ -57,7 +69,7 @@ _PLACES = {
     "simulation.result": ("Result",),
     "simulation.run": ("RunEnded", "evaluate", "run"),
     "simulation.simulate": ("simulate",),
-    "studies._runner": ("Answer", "run_study", "study"),
+    "studies._runner": ("Answer", "list_studies", "run_study", "schema", "study"),
 }
 
 

@@ -301,10 +301,9 @@ def new(
 @app.command()
 def schema(radial: Annotated[bool, typer.Option("--radial", help="of lip and circumferential seals")] = False):
     """Print the JSON schema of scenario files, for editors."""
-    from .scenario.tables import RadialFile, ScenarioFile
-    from .studies._runner import schema_with_studies
+    from .studies._runner import schema as schema_of
 
-    print(json.dumps(schema_with_studies(RadialFile if radial else ScenarioFile), indent=2))
+    print(json.dumps(schema_of(radial), indent=2))
 
 
 @app.command("list")

@@ -43,12 +43,12 @@ ounce = 1 / 16 pound = oz
 tonne = 1e3 kilogram
 liter = 1e-3 meter**3 = L = l = litre
 cc = 1e-6 meter**3
-revolution = 6.28318530717958647692528676655900577 radian = rev = turn
+revolution = 6.28318530717958647692528676655900577 radian = rev = turn = r
 degree = 1 / 360 revolution = deg
 arcminute = 1 / 60 degree = arcmin
 arcsecond = 1 / 60 arcminute = arcsec
 hertz = revolution / second = Hz
-rpm = revolution / minute
+rpm = revolution / minute = RPM = Rpm
 rps = revolution / second
 newton = kilogram * meter / second**2 = N
 standard_gravity = 9.80665 meter / second**2
@@ -67,6 +67,9 @@ bar = 1e5 pascal = bara
 atmosphere = 101325 pascal = atm
 torr = 101325 / 760 pascal = Torr
 mmHg = 133.322387415 pascal
+inHg = 25.4 mmHg
+meter_of_water = 9806.65 pascal = mHtwoO
+inch_of_water = 0.0254 meter_of_water = inHtwoO
 psi = pound_force / inch**2 = psia
 ksi = 1e3 psi
 poise = 0.1 pascal * second = P
@@ -140,7 +143,7 @@ def dimension_and_factor(text: str) -> tuple[frozenset, Decimal]:
 def _by_pint(text: str) -> tuple[frozenset, Decimal]:
     if len(text) > 60 or UNCLEAR.search(text):
         raise ValueError(text)
-    text = POWER.sub(r"^\1", PRODUCT.sub("*", text))
+    text = POWER.sub(r"^\1", PRODUCT.sub("*", text.replace("H2O", "HtwoO")))
     text = f"1{text}" if text.startswith("/") else text
     if not UNIT.fullmatch(text):
         raise ValueError(text)

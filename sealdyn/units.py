@@ -20,7 +20,7 @@ MOST_POINTS = 20_000
 # Of a list.
 MOST_LISTED = 200_000
 # A unit of pressure that counts from the air's, "barg", "bar(g)", "psi gauge", and that pressure (Pa).
-GAUGE = re.compile(r"(.+?) ?(?:\(g\)|\(?\bgau?ge\b\)?)|(\w*(?:bar|psi|Pa|atm)) ?g")
+GAUGE = re.compile(r"(.+?) ?(?:\([gG]\)|\(?\bgau?ge\b\)?)|(\w*(?:bar|psi|Pa|atm)) ?[gG]")
 AIR = 101325
 
 
@@ -107,13 +107,13 @@ class Quantity:
 
     def _split(self, text: str) -> tuple[str, str]:
         """Number and unit of a string, with this quantity's own reading of `g`."""
-        match = NUMBER.fullmatch(text.strip()) if len(text) < 200 else None
+        match = NUMBER.fullmatch(text.strip().replace(MINUS, "-")) if len(text) < 200 else None
         if not match:
             raise QuantityError(quoted(text), self.expected())
         number, unit = match[1], match[2]
         if not unit:
             raise QuantityError(f"{quoted(text)} (no unit)", self.expected())
-        unit = unit.translate(UNICODE_UNITS)
+        unit = RAISED.sub(lambda found: "^" + found[0].translate(POWERS), unit.translate(UNICODE_UNITS))
         if self.name.startswith("acceleration"):
             # The field's g is standard gravity; elsewhere g is the gram.
             unit = re.sub(r"\b([mu]?)g\b", r"\1standard_gravity", unit)
@@ -182,7 +182,10 @@ class SampleTime(Quantity):
     """Times of samples: usual is what lies between them."""
 
 
-SAME_UNITS = {"µ": "u", "μ": "u", "·": "*", "⋅": "*", "×": "*", "²": "^2", "³": "^3", "°": "deg"}
+# Of typeset text.
+MINUS, RAISED = "\N{MINUS SIGN}", re.compile("⁻?[¹²³⁴]")
+POWERS = str.maketrans("⁻¹²³⁴", "-1234")
+SAME_UNITS = {"µ": "u", "μ": "u", "·": "*", "⋅": "*", "×": "*", "°": "deg", MINUS: "-"}
 UNICODE_UNITS = str.maketrans(SAME_UNITS | dict.fromkeys("\t\u00a0\u202f", " "))
 
 

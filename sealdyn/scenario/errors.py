@@ -50,7 +50,7 @@ MEANT = {
 # A pure number as some write it.
 PERCENT = re.compile(r"\s*([+-]?\d+(?:\.\d*)?)\s*(?:%|percent|per cent)\s*")
 # What `nearest` says of a key of the same table.
-NEAR = re.compile(r"nearest '(\w+)'$")
+NEAR = re.compile(r"nearest '(\w+)'(?:, by its keys)?$")
 # Keys that stand in no table.
 ABOVE_TABLES = ("schema",)
 # Characters of what was expected: it may list names.
@@ -234,7 +234,7 @@ def _explained(name: str, kind: type, raw: dict, error: dict) -> ScenarioError:
     path, holds, value = _follow(kind, raw, error["loc"], keep_last=unknown)
     key = ".".join(path)
     if unknown:
-        return _unknown(name, kind, path)
+        return _unknown(name, kind, path, raw)
     if error["type"] == "missing" or value is NOTHING:
         found = MISSING[bool(table_in(holds))]
         return ScenarioError(name, key, found, expected_of(key, holds))
@@ -296,11 +296,23 @@ def _expected_here(path: list[str], holds: Any, error: dict) -> str:
     return expected_of(key, holds) + limit
 
 
-def _unknown(name: str, kind: type, path: list[str]) -> ScenarioError:
+def _unknown(name: str, kind: type, path: list[str], raw: dict) -> ScenarioError:
     table, key = ".".join(path[:-1]), path[-1]
     what, valid = ("an unknown key", f"a key of [{table}]") if table else ("an unknown table", "a known table")
     printable = ".".join([*path[:-1], quoted(key).strip('"')])
-    return ScenarioError(name, printable, what, f"{valid}; {nearest(kind, table, key)}")
+    near = nearest(kind, table, key)
+    if not table and not near.startswith("nearest") and (like := _table_like(kind, raw.get(key))):
+        near = f"nearest '{like}', by its keys"
+    return ScenarioError(name, printable, what, f"{valid}; {near}")
+
+
+def _table_like(kind: type, raw: Any) -> str:
+    """The table that has most keys of one, more than half of them; "" if none has."""
+    keys = set(raw) if isinstance(raw, dict) else set()
+    every = {table: known | diameters(known) for table, known in tables(kind).items() if "." not in table}
+    shares = {table: len(keys.intersection(known)) for table, known in every.items() if table}
+    best = max(shares, key=lambda table: shares[table], default="")
+    return best if shares.get(best, 0) > 0.5 * len(keys) else ""
 
 
 def _beside_the_point(raw: dict, location: tuple) -> bool:

@@ -29,7 +29,7 @@ from ..scenario.overrides import radius_key, without_arrays
 from ..scenario.reader import Scenario, scenario_of
 from ..scenario.schema import json_schema, table_schema
 from ..scenario.settings import bare_settings, study_settings, without, written_settings
-from ..scenario.tables import ScenarioFile
+from ..scenario.tables import RadialFile, ScenarioFile
 from ..scene import variants
 from ..scene.patterns import face_orders, faces_tilt, grooves_of, waves_of
 from ..scene.radial import RadialScene
@@ -428,14 +428,22 @@ def typed(value) -> str:
     return f"{value:g}" if isinstance(value, float) else json.dumps(value)
 
 
-def schema_with_studies(file: type = ScenarioFile) -> dict:
-    """The JSON schema of scenario files (`file`: those of face seals, or reader.RadialFile) with the settings of every
-    study."""
-    schema = json_schema(file)
+def list_studies() -> dict[str, str]:
+    """The studies there are, and what each asks.
+
+    >>> sealdyn.list_studies()["critical-speed"]
+    'Where does the seal start to whirl, and what becomes of it?'
+    """
+    return {name: study_info(name.replace("-", "_")).asks or about(name) for name in study_names()}
+
+
+def schema(radial: bool = False) -> dict[str, Any]:
+    """The JSON schema of scenario files of face seals (or of radial ones) with the settings of every study."""
+    found = json_schema(RadialFile if radial else ScenarioFile)
     tables = {name.replace("-", "_"): _table(name) for name in study_names()}
-    study = schema["properties"]["study"]
+    study = found["properties"]["study"]
     told = {"type": "object", "properties": tables, "additionalProperties": False}
-    return {**schema, "properties": {**schema["properties"], "study": {"description": study["description"], **told}}}
+    return {**found, "properties": {**found["properties"], "study": {"description": study["description"], **told}}}
 
 
 def _table(name: str) -> dict:

@@ -165,7 +165,9 @@ def test_sources_of_kernels_hold_all_that_kernels_are_made_of():
             modules = [target.with_suffix(".py")]
             modules += [target / f"{name}.py" for name in ("__init__", *re.findall(r"\w+", names))]
             ahead += [file for file in modules if file in texts and file not in found]
-    assert found - {PACKAGE / "kernel_cache.py", PACKAGE / "extensions.py"} <= set(sealdyn.kernel_cache.kernel_sources())
+    assert found - {PACKAGE / "kernel_cache.py", PACKAGE / "extensions.py"} <= set(
+        sealdyn.kernel_cache.kernel_sources()
+    )
 
 
 def test_only_what_has_an_address_is_a_function_value():

@@ -21,7 +21,8 @@ from sealdyn.studies import (
     sweep,
     work_precision,
 )
-from sealdyn.studies._runner import help_text, schema_with_studies, settings_of, study_info, study_module
+from sealdyn.studies._runner import help_text, settings_of, study_info, study_module
+from sealdyn.studies._runner import schema as whole_schema
 
 SCENARIO = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
 
@@ -119,7 +120,7 @@ def test_units_of_keys():
             si_unit(scenario().scene, key)
 
 
-schema = cache(schema_with_studies)
+schema = cache(whole_schema)
 
 
 @pytest.mark.parametrize("name", study_names())

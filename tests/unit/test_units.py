@@ -53,7 +53,11 @@ def read(kind, value):
         ("Temperature", "32F", 273.15), ("SpecificHeat", "2 kJ/kgK", 2000.0),
         ("ConingPerKelvin", "1 urad/degF", 1.8e-6), ("Speed", "50 rps", 100 * math.pi),
         ("WearCoefficient", "1e-16 /Pa", 1e-16), ("WearCoefficient", "1e-7 mm3/(N m)", 1e-16),
-        ("Speed", "10 rev / min", math.pi / 3),
+        ("Speed", "10 rev / min", math.pi / 3), ("Speed", "10 r/min", math.pi / 3), ("Speed", "10 RPM", math.pi / 3),
+        ("Pressure", "0.5 MPaG", 601325.0), ("Pressure", "2 inHg", 50.8 * 133.322387415),
+        ("Pressure", "2 mH2O", 19613.3), ("Pressure", "50 mmH2O", 490.3325), ("Pressure", "1 inH2O", 249.08891),
+        ("Tilt", "\N{MINUS SIGN}10 urad", -1e-5), ("Viscosity", "1e\N{MINUS SIGN}3 N·s·m⁻²", 1e-3),
+        ("Speed", "5 rad s⁻¹", 5.0), ("Inertia", "8 kg·cm²", 8e-4),
     ],
 )  # fmt: skip
 def test_strings_with_units(kind, text, si):

@@ -1,0 +1,52 @@
+"""What verbs say, in Python: the same numbers, the same errors."""
+
+import json
+import pkgutil
+
+import pytest
+from command import SCENARIOS
+from command import sealdyn as verb
+
+import sealdyn
+
+REFERENCE = SCENARIOS / "fms_reference.toml"
+
+
+def test_no_public_name_is_that_of_a_part_of_the_package():
+    """Else the name is one or the other, as something was imported before."""
+    parts = {module.name for module in pkgutil.iter_modules(sealdyn.__path__)}
+    assert not parts & set(sealdyn.__all__)
+    assert all(getattr(sealdyn, name) is not None for name in sealdyn.__all__)
+
+
+def test_what_check_says(tmp_path):
+    found = sealdyn.check(REFERENCE, {"film.clearance": "8 um"})
+    assert found["status"] == "ok" and found["scene"]["film"]["clearance"] == 8e-6
+    told = verb("check", REFERENCE, "--set", "film.clearance=8 um", "--json", cwd=tmp_path).found
+    assert json.loads(json.dumps(found)) == told
+    assert sealdyn.design_rules(REFERENCE, {"film.clearance": "8 um"}) == found["design_rules"]
+    with pytest.raises(sealdyn.ScenarioError):
+        sealdyn.check(REFERENCE, {"film.clearance": "-8 um"})
+
+
+def test_what_validate_says():
+    rows = sealdyn.validate("green-1989")
+    assert rows and all(row["verdict"] != "FAILED" for row in rows)
+    with pytest.raises(ValueError):
+        sealdyn.validate("green-1990")
+
+
+def test_runs_are_compared_shown_and_moved(tmp_path):
+    files = [sealdyn.run(REFERENCE, {"run.turns": 2, "film.clearance": f"{gap} um"}, out=tmp_path / f"{gap}.h5").archive
+             for gap in (8, 9)]  # fmt: skip
+    found = sealdyn.compare(*files)
+    assert [row["key"] for row in found["scene"]] == ["film.clearance"]
+    page = sealdyn.review(files, tmp_path / "page.html")
+    assert page.read_text(encoding="utf-8").count("<svg") >= 2 or page.stat().st_size > 10_000
+    picture = sealdyn.animate(files[0], tmp_path / "moved.png")
+    assert picture.stat().st_size > 1000
+
+
+def test_studies_and_keys_are_listed():
+    assert "critical-speed" in sealdyn.list_studies() and all(sealdyn.list_studies().values())
+    assert "film" in sealdyn.schema()["properties"] and "lip" in sealdyn.schema(radial=True)["properties"]
