@@ -32,7 +32,7 @@ def test_every_public_name_is_in_the_script():
 def test_the_script_runs(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     typed_door.main(tmp_path)
-    assert {path.name for path in tmp_path.iterdir()} == {"kept.h5", "e.h5"}
+    assert {path.name for path in tmp_path.iterdir()} == {"kept.h5", "e.h5", "page.html", "moved.png"}
 
 
 @pytest.mark.slow

@@ -66,9 +66,22 @@ def studies(scenario: sealdyn.Scenario, folder: Path) -> None:
     assert_type(sealdyn.run_study("equilibrium", scenario, folder / "e.h5", workers=1), dict[str, Any])
 
 
+def verbs(scenario: sealdyn.Scenario, folder: Path) -> None:
+    """What else the program says."""
+    assert_type(sealdyn.check(scenario)["warnings"], Any)
+    assert_type(sealdyn.design_rules(scenario), list[dict[str, Any]])
+    assert_type(sealdyn.validate("green-1989"), list[dict[str, Any]])
+    assert_type(sealdyn.compare(folder / "kept.h5", folder / "kept.h5"), dict[str, Any])
+    assert_type(sealdyn.review([folder / "kept.h5"], folder / "page.html"), Path)
+    assert_type(sealdyn.animate(folder / "kept.h5", folder / "moved.png"), Path)
+    assert_type(sealdyn.schema(), dict[str, Any])
+    assert_type(sealdyn.list_studies(), dict[str, str])
+
+
 def main(folder: Path) -> None:
     """Everything once, archives in a folder."""
     assert_type(sealdyn.__version__, str)
     scenario = scenarios()
     runs(scenario, folder)
     studies(scenario, folder)
+    verbs(scenario, folder)
