@@ -1,12 +1,7 @@
 """Wave design: how many waves, on how stiff a ring, carry most of the load below a leakage, of those that a pressure
 between two O-rings can bend the ring to and that hold; the fold, and the stiffest ring that still comes there.
 
-    E J |net| = | E J initial + c H(net) |,  drive = d/(E J):  load and drive bend a ring alike
-
-The load H on a wave follows from the waves that are left alone, and so one curve of it for each order answers for all
-rings.
-**Source** Lebeck, Teale & Pierce, ONR ME-95(79)ONR-414-1 (1979), ch. 3, eqs. 3-6 to 3-12 and Figs. 3-11 to 3-13.
-**Valid** as dynamics/elastic_ring.py; one torsion ratio for all rings.
+One curve of balances for each order of waves answers for all rings (analysis/wave_design.py).
 """
 
 from dataclasses import asdict, dataclass, replace
@@ -15,8 +10,8 @@ from typing import Annotated
 
 import numpy as np
 from pydantic import Field
-from scipy.interpolate import CubicSpline
 
+from ..analysis.wave_design import PLACES, READ, design, joined, stiffest
 from ..answers import CYCLE, Answer, Axis, Level, Panel, Series, Table
 from ..dynamics.elastic_ring import operating_point, order_of, with_cells_of
 from ..dynamics.warm_state import at_work
@@ -28,7 +23,6 @@ from ..scene.variants import frozen_at_start
 from ..units import BendingStiffness, Length, VolumeFlow
 from . import Info
 
-READ = ("load_support", "friction_coefficient", "leakage", "clearance")
 INFO = Info(
     timed=("lebeck_driven", 20),
     asks="Which waves on which ring carry most?",
@@ -40,8 +34,8 @@ INFO = Info(
     },
     along={"curves": ("curve", "place")},
 )  # fmt: skip
-# Net wavinesses that are looked at, in half heights of the asperities; places between those computed.
-LEAST, LARGEST, PLACES = 0.1, 3.0, 20_001
+# Net wavinesses that are looked at, in half heights of the asperities; points of a curve that is shown.
+LEAST, LARGEST, SHOWN = 0.1, 3.0, 200
 
 
 @dataclass(frozen=True)
@@ -84,7 +78,7 @@ def run(scenario, settings, tools) -> Answer:
                  for stiff in stiffnesses]  # fmt: skip
         designs += found
         orders.append({"order": order, **stiffest(ring, order, curve, limit)})
-        curves.append({"order": order, **{name: curve[name][:: PLACES // 200].tolist() for name in ("net", *READ)}})
+        curves.append({"order": order, **{name: curve[name][:: PLACES // SHOWN].tolist() for name in ("net", *READ)}})
     numbers = {"leakage_limit": limit, "driven": scene.stator.elastic.driven(2) > 0.0, "designs": designs,
                "orders": orders, "curves": curves, "best": _best(designs)}  # fmt: skip
     return Answer(numbers, _found(numbers), _tables(numbers), _panels(numbers), _notes(numbers))
@@ -140,66 +134,6 @@ def _point(scene, net) -> dict:
         return asdict(operating_point(scene, net))
     except SceneError as error:
         return {"failed": str(error)}
-
-
-def joined(compliance: float, rows: list[dict]) -> dict[str, np.ndarray]:
-    """Operating points of a ring of one `compliance` (m/N) as dicts, along which `net` waviness rises, joined by cubic
-    splines over its logarithm: `net` (m) evenly, READ, and the harmonic of the `load` (N, complex) there."""
-    net, initial, turned = (np.array([row[name] for row in rows]) for name in ("net", "initial", "turned"))
-    load = (net - initial * np.exp(-1j * turned)) / compliance
-    along = np.linspace(*np.log(net[[0, -1]]), PLACES)
-    read = {name: [row[name] for row in rows] for name in READ}
-    columns = CubicSpline(np.log(net), np.stack([load.real, load.imag, *read.values()], axis=1))(along).T
-    return {"net": np.exp(along), "load": columns[0] + 1j * columns[1], **dict(zip(read, columns[2:], strict=True))}
-
-
-def design(ring, order: int, curve, limit: float | None = None) -> dict:
-    """The waviness of most load support on a `ring` among the stable ones that its drive can make (any, without one)
-    and that leak at most the `limit` (m^3/s): net, initial and READ (None where there is none), what limits it;
-    `drivable`, `fold`, where the smallest waves that hold end, `holds_again` (None where all hold), and the
-    `largest_stable` net waviness that the drive can make."""
-    net = curve["net"]
-    initial = np.abs(net - ring.compliance(order) * curve["load"])
-    drivable = ring.driven(order) or None
-    rising = np.append(np.diff(initial) > 0.0, True)
-    rising[-1] = rising[-2]
-    makes = initial <= (np.inf if drivable is None else drivable)
-    leaks = curve["leakage"] > (np.inf if limit is None else limit)
-    turns = np.flatnonzero(np.diff(rising.astype(int)))
-    fold = next((i for i in turns if rising[i]), None)
-    again = next((i for i in turns if not rising[i]), None)
-    holds = np.flatnonzero(rising & makes)
-    good = np.flatnonzero(rising & makes & ~leaks)
-    out = {"stiffness": ring.bending_stiffness, "drivable": drivable,
-           "fold": None if fold is None else float(net[fold]),
-           "holds_again": None if again is None else float(net[again]),
-           "largest_stable": float(net[holds[-1]]) if len(holds) else None}  # fmt: skip
-    if not len(good):
-        return out | dict.fromkeys(("net", "initial", *READ)) | {"limited_by": "drive" if not len(holds) else "leakage"}
-    best = good[np.argmax(curve["load_support"][good])]
-    following = min(best + 1, len(net) - 1)
-    limits = {"range": following == best, "drive": not makes[following], "fold": not rising[following],
-              "leakage": leaks[following]}  # fmt: skip
-    limited_by = next((name for name, there in limits.items() if there), "nothing")
-    return out | {"net": float(net[best]), "initial": float(initial[best]), "limited_by": limited_by,
-                  **{name: float(curve[name][best]) for name in READ}}  # fmt: skip
-
-
-def stiffest(ring, order: int, curve, limit: float | None) -> dict:
-    """The waviness of most load support that leaks at most the `limit` (m^3/s) on any ring, and the bending stiffness
-    (N m^2) of the `stiffest` ring that the drive of `ring` can still bend there: |E J net - c load| = d.  None where
-    there is none, or no drive."""
-    allowed = np.flatnonzero(curve["leakage"] <= (np.inf if limit is None else limit))
-    if not len(allowed):
-        return {"stiffest": None, "net": None, "load_support": None}
-    best = allowed[np.argmax(curve["load_support"][allowed])]
-    net, load = curve["net"][best], curve["load"][best]
-    pushed = ring.bending_stiffness * ring.compliance(order) * load
-    drive = ring.bending_stiffness * ring.driven(order)
-    roots = np.roots([net**2, -2.0 * net * pushed.real, abs(pushed) ** 2 - drive**2])
-    real = [root.real for root in roots if root.imag == 0.0 and root.real > 0.0]
-    return {"stiffest": float(max(real)) if real and drive else None, "net": float(net),
-            "load_support": float(curve["load_support"][best])}  # fmt: skip
 
 
 def _best(designs) -> dict | None:

@@ -9,11 +9,12 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from sealdyn import read_scenario, run_study
+from sealdyn.analysis.wave_design import design, joined, stiffest
 from sealdyn.dynamics.elastic_ring import at_rest, operating_point, with_cells_of
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scene.rings import ElasticRing
 from sealdyn.scene.scene import SceneError
-from sealdyn.studies.wave_design import design, joined, of_order, stiffest
+from sealdyn.studies.wave_design import of_order
 
 FILE = Path(__file__).parents[2] / "scenarios" / "lebeck_driven.toml"
 COARSE = ["film.reynolds.cells_r=6", "film.reynolds.cells_theta=324"]
