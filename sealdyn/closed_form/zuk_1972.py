@@ -41,13 +41,13 @@ class Published(NamedTuple):
     """One row: tilt (rad, positive: the film grows outwards), mean film (m), printed leakage (kg/s), force (N) and its
     centre (share of the dam's width from the high pressure); force and centre without the error of the tilted rows,
     and exit Mach number, computed: laminar, no entrance loss, width constant (no tilt) or radial, the friction factor
-    of the mean radius; the printed exit Mach number, where there is one."""
+    of the mean radius; the printed exit Mach number.  None of what is not printed, or not held from the print."""
 
     tilt: float
     mean_film: float
-    leakage: float
-    force: float
-    centre: float
+    leakage: float | None
+    force: float | None
+    centre: float | None
     corrected_force: float
     corrected_centre: float
     exit_mach: float
@@ -62,9 +62,9 @@ def _row(tilt, mils, pounds_per_minute, pounds, centre, corrected_pounds, correc
     return Published(
         tilt,
         mils * MIL,
-        pounds_per_minute * POUND / 60,
-        pounds * POUND_FORCE,
-        centre / 100,
+        None if pounds_per_minute is None else pounds_per_minute * POUND / 60,
+        None if pounds is None else pounds * POUND_FORCE,
+        None if centre is None else centre / 100,
         corrected_pounds * POUND_FORCE,
         corrected_centre / 100,
         exit_mach,
@@ -80,6 +80,14 @@ ZUK_1972 = (
     _row(0.002, 0.1, 0.0068, 58, 26.0, 82.4, 31.57, 0.093, 0.09),
     _row(0.002, 0.2, 0.0837, 91, 33.0, 110.3, 36.12, 0.661, 0.66),
     _row(-0.002, 0.2, 0.0827, 220, 49.8, 155.3, 42.16, 1.0),
+)
+# Rows of which one printed number is held, or none.
+ZUK_1972_IN_PART = (
+    _row(0.0, 0.5, None, None, 41.7, 141.4, 42.65, 1.0),
+    _row(0.002, 0.3, None, None, None, 121.0, 38.44, 1.0, 1.0),
+    _row(0.002, 0.5, None, None, None, 130.1, 41.65, 1.0, 1.0),
+    _row(-0.002, 0.3, None, None, None, 151.8, 42.19, 1.0),
+    _row(-0.002, 0.5, None, None, None, 150.5, 43.41, 1.0),
 )
 
 

@@ -56,6 +56,11 @@ def order_of(scene) -> int:
     return int(scene.stator.waviness[0].order)
 
 
+def unloaded(scene) -> float:
+    """Waviness (m) of a scene's ring without load: what it was made with, and what its drive adds."""
+    return scene.stator.waviness[0].amplitude + scene.stator.elastic.driven(order_of(scene))
+
+
 def with_net(scene, net: float, phase: float = 0.0):
     """The scene with a ring that keeps a `net` waviness (m)."""
     waves = [replace(scene.stator.waviness[0], amplitude=net, phase=phase)]
@@ -101,14 +106,14 @@ def at_rest(scene):
 
 @lru_cache(maxsize=16)
 def _at_rest(asked):
-    scene, made = asked.scene, asked.scene.stator.waviness[0]
-    if made.amplitude == 0.0:
-        return with_net(scene, 0.0, made.phase)
-    fixed = with_cells_of(scene, min(made.amplitude, scene.contact.roughness if scene.contact else math.inf))
-    above = net = made.amplitude / STRIDE
-    while net > LEAST * made.amplitude:
+    scene, made, phase = asked.scene, unloaded(asked.scene), asked.scene.stator.waviness[0].phase
+    if made == 0.0:
+        return with_net(scene, 0.0, phase)
+    fixed = with_cells_of(scene, min(made, scene.contact.roughness if scene.contact else math.inf))
+    above = net = made / STRIDE
+    while net > LEAST * made:
         try:
-            enough = operating_point(fixed, net).initial <= made.amplitude
+            enough = operating_point(fixed, net).initial <= made
         except SceneError:
             # Waves higher than any film.
             above = net
@@ -118,15 +123,15 @@ def _at_rest(asked):
         above, net = net, net * STRIDE
     else:
         raise SceneError("stator.elastic", "waves that the load levels altogether", "a stiffer ring, or no waves")
-    rest = brentq(lambda h: operating_point(fixed, h).initial - made.amplitude, net, above, rtol=EXACT)
+    rest = brentq(lambda h: operating_point(fixed, h).initial - made, net, above, rtol=EXACT)
     # The net crests lie beyond the initial ones, which the phase is counted from.
-    return with_net(scene, rest, made.phase - operating_point(fixed, rest).turned)
+    return with_net(scene, rest, phase - operating_point(fixed, rest).turned)
 
 
 def operating_points(scene, along: list[OperatingPoint]) -> list[tuple[OperatingPoint, bool]]:
     """Every operating point of the scene's ring among those `along` which net waviness rises, and whether it holds:
     where more waviness left would need more to begin with."""
-    initial, found = scene.stator.waviness[0].amplitude, []
+    initial, found = unloaded(scene), []
     for before, here in pairwise(along):
         if (before.initial - initial) * (here.initial - initial) <= 0.0 and before.initial != here.initial:
             at = brentq(lambda h: operating_point(scene, h).initial - initial, before.net, here.net, rtol=EXACT)

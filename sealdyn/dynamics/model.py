@@ -52,10 +52,10 @@ class Model:
                 scene = with_course(scene, self.given, self.course)
         self._warm = {} if self.heat is None else {float(initially(scene.shaft.speed)): self}
         if scene.stator.elastic is not None:
-            from .elastic_ring import at_rest
+            from .elastic_ring import at_rest, unloaded
 
             # Its waves are those at rest, throughout.
-            made, scene = scene, at_rest(scene)
+            made, scene = unloaded(scene), at_rest(scene)
         self.scene, self.accuracy, self.film = scene, accuracy, film
         self.film_error = accuracy / 100 if film_error is None else film_error
         self.interface = Interface(scene, max(self.film_error, 1e-13), film)
@@ -66,7 +66,7 @@ class Model:
         self.start = first_interval(self._imposed(), sweep_breaks(scene))
         self.unknowns = Unknowns(scene, self.closing, self.interface.film.constant, self.interface.unknowns)
         if made is not None:
-            was, left = (1e6 * seal.stator.waviness[0].amplitude for seal in (made, scene))
+            was, left = 1e6 * made, 1e6 * scene.stator.waviness[0].amplitude
             self.unknowns.reasons.append(f"elastic ring: {left:.4g} um of its {was:.4g} um of waves are left at rest")
         if self.unknowns.film_unknowns and self.unknowns.coulomb_rings:
             # What a stuck ring holds is looked for between steps, from the motion of the rings alone.

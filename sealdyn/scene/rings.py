@@ -168,6 +168,11 @@ class ElasticRing(Strict):
     torsion_ratio: float = 1.3
     """Bending stiffness over torsional stiffness, A = E J/(G J_t); 1.3 for a round bar of steel, 1.5 to 6 for slender
     sections."""
+    drive_pressure: Stress | None = None
+    """Above that around it, between two O-rings on it, in sectors that follow its waves; what it bends the ring to
+    is added to `[[stator.waviness]]`."""
+    drive_length: Length | None = None
+    """Between those O-rings, beside `drive_pressure`."""
 
     def compliance(self, order: int) -> float:
         """Deflection (m) of the wave `order` per N of its harmonic of the load int p r dr (N), m/N:
@@ -181,6 +186,12 @@ class ElasticRing(Strict):
         couple = 0.125 * length**2 * pressure * self.radius**3 / self.bending_stiffness
         return couple * (1.0 + self.torsion_ratio) / (order**2 - 1) ** 2
 
+    def driven(self, order: int) -> float:
+        """Waviness (m) that its own drive gives the ring, 0 without one."""
+        if self.drive_pressure is None or self.drive_length is None:
+            return 0.0
+        return self.largest_waviness(order, self.drive_pressure, self.drive_length)
+
 
 def elastic_errors(scene) -> list[tuple[str, str, str]]:
     """What a scene with such a ring cannot have: (key, found, expected)."""
@@ -192,6 +203,12 @@ def elastic_errors(scene) -> list[tuple[str, str, str]]:
             bad.append((f"stator.elastic.{key}", f"{getattr(ring, key):g}", "a value > 0"))
     if not 0.0 <= ring.torsion_ratio < math.inf:
         bad.append(("stator.elastic.torsion_ratio", f"{ring.torsion_ratio:g}", "a ratio >= 0"))
+    drive = {"drive_pressure": ring.drive_pressure, "drive_length": ring.drive_length}
+    for key, value in drive.items():
+        if value is None and any(drive.values()):
+            bad.append((f"stator.elastic.{key}", "nothing", "a value > 0: a drive has pressure and length"))
+        if value is not None and not 0.0 < value < math.inf:
+            bad.append((f"stator.elastic.{key}", f"{value:g}", "a value > 0"))
     if len(scene.stator.waviness) != 1 or scene.rotor.waviness:
         found = f"{len(scene.stator.waviness)} waves of the stator, {len(scene.rotor.waviness)} of the rotor"
         bad.append(("stator.elastic", found, "one [[stator.waviness]], which the load levels, and none of the rotor"))

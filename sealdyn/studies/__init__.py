@@ -36,9 +36,9 @@ class Info:
     `timed`: a scenario (and flags) with which the default settings take so much processor time (s) on one core.
     `asks`: the question it answers, the title of its figure.
     `seals`: "face", "radial" or "any".  `wavy`: it reckons with wavy faces, or does not ask how thin the film is; else
-    it refuses them (`of_waves`: what the refusal adds).  `grooved`: it reckons with grooves.  `aligned`: its numbers
-    are of aligned faces, and say so where faces press with a moment there.  `refuses`: of "contact", "secondary-seal"
-    and such a "moment" what it cannot reckon with; --without leaves the first two out.
+    it refuses them.  `grooved`: it reckons with grooves.  `aligned`: its numbers are of aligned faces, and say so where
+    faces press with a moment there.  `refuses`: of "contact", "secondary-seal" and such a "moment" what it cannot
+    reckon with; --without leaves the first two out.
     `warm`: what is said where rings take heat, of a temperature that does not follow what the study changes.
     `units` {key of the answer (joined by "/"), or its end, or "*" for all others: SI unit}, of elements with units of
     their own a list; what hangs on the scenario is in a table `units` of the answer.  `along` {table of the answer, or
@@ -52,7 +52,6 @@ class Info:
     grooved: bool = False
     aligned: bool = False
     warm: str = ""
-    of_waves: str = ""
     refuses: tuple[str, ...] = ()
     units: Mapping[str, str | list] = field(default_factory=dict)
     along: Mapping[str, tuple[str, ...]] = field(default_factory=dict)

@@ -215,7 +215,7 @@ def _refuse_seal(name: str, info: Info, scene):
     if info.wavy:
         return
     if waves_of(scene):
-        expected = f"none: this study ({name}) knows faces that are the same all around{info.of_waves}"
+        expected = f"none: this study ({name}) knows faces that are the same all around"
         raise SceneError(_key_of_pattern(scene), "wavy faces", expected)
     if scene.film.pads:
         raise SceneError("film.pads", "pads", f"none: this study ({name}) knows faces that are the same all around")

@@ -16,6 +16,7 @@ from ..dynamics.elastic_ring import (
     operating_points,
     order_of,
     state,
+    unloaded,
     with_cells_of,
 )
 from ..dynamics.warm_state import at_work
@@ -71,7 +72,7 @@ def run(scenario, settings, tools) -> Answer:
     if ring is None:
         expected = "the ring that bends: bending_stiffness, radius, torsion_ratio"
         raise SceneError("stator.elastic", "nothing", expected)
-    initial, order = scene.stator.waviness[0].amplitude, order_of(scene)
+    initial, order = unloaded(scene), order_of(scene)
     low = settings.net_from if settings.net_from is not None else LEAST * initial
     high = settings.net_to if settings.net_to is not None else LARGEST * initial
     if not 0.0 < low < high:

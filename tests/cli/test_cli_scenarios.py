@@ -23,6 +23,7 @@ COARSER = {
     "lebeck_n6": {"film.reynolds.cells_r": 6, "film.reynolds.cells_theta": 270},
     "lebeck_n3": {"film.reynolds.cells_r": 6, "film.reynolds.cells_theta": 135},
     "lebeck_elastic": {"film.reynolds.cells_r": 6},
+    "lebeck_driven": {"film.reynolds.cells_r": 6, "film.reynolds.cells_theta": 180},
 }
 CONTRACT = {
     "model": {"film", "unknowns", "solver", "start", "reasons", "unused"},

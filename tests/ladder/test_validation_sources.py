@@ -25,7 +25,7 @@ from sealdyn.analysis.sources import (
 from sealdyn.closed_form import zuk_1972 as zuk
 
 COMMON = {"source", "quantity", "published", "deviation", "roads_apart", "verdict", "remark"}
-VERDICTS = {"agrees", "rounding", "print differs", "FAILED"}
+VERDICTS = {"agrees", "rounding", "print differs", "unexplained", "FAILED"}
 WIDTH = zuk.CRUISE.outer_radius - zuk.CRUISE.inner_radius
 AROUND = math.pi * (zuk.CRUISE.outer_radius + zuk.CRUISE.inner_radius)
 
@@ -66,6 +66,7 @@ def test_sources_are_the_files_there_are():
         "grooved-faces",
         "lebeck-1979",
         "lebeck-1979-plateaus",
+        "lebeck-1979-waves",
         "ludwig-allen",
         "zuk-1972",
     ]
@@ -91,8 +92,13 @@ def test_rows_have_what_every_source_has(name, request, capsys):
 
 def test_every_row_of_the_dam_has_its_verdict(dams):
     """Printed forces and centres of tilted rows differ, all else agrees: leakage 0.41 %, parallel rows 0.49 %."""
-    assert len(dams) == 4 * len(zuk.ZUK_1972)
+    assert len(dams) == 4 * len(zuk.ZUK_1972) + 3 * len(zuk.ZUK_1972_IN_PART)
+    odd = [row for row in dams if row["verdict"] == "unexplained"]
+    assert [(row["mean_film"], row["quantity"]) for row in odd] == [(0.5 * zuk.MIL, "centre_of_pressure")]
     for row in dams:
+        if row in odd or (row["published"] is None and row["quantity"] != "exit_mach"):
+            assert row["roads_apart"] <= 1e-3
+            continue
         load = row["quantity"] in ("force", "centre_of_pressure")
         if row["tilt"] and load:
             assert row["verdict"] == "print differs" and abs(row["deviation"]) > 0.09
@@ -104,15 +110,27 @@ def test_every_row_of_the_dam_has_its_verdict(dams):
         else:
             assert row["roads_apart"] <= (1e-3 if load else 5e-3)
     printed = {(row["tilt"], row["published"]) for row in dams if row["quantity"] == "exit_mach" and row["published"]}
-    assert printed == {(0.002, 0.09), (0.002, 0.66)}
+    assert printed == {(0.002, 0.09), (0.002, 0.66), (0.002, 1.0)}
 
 
 def test_the_print_is_more_than_full_pressure_on_the_dam(dams):
     full = AROUND * WIDTH * (zuk.CRUISE.high_pressure - zuk.CRUISE.low_pressure)
     forces = [row for row in dams if row["quantity"] == "force"]
     assert full == pytest.approx(206.7 * zuk.POUND_FORCE, rel=1e-3) and f"{full / zuk.POUND_FORCE:.1f}" == "206.7"
-    assert max(row["computed"] for row in forces) < full < max(row["published"] for row in forces)
-    assert all("206.7" in row["remark"] for row in forces if row["tilt"])
+    assert max(row["computed"] for row in forces) < full < max(row["published"] or 0.0 for row in forces)
+    assert all("206.7" in row["remark"] for row in forces if row["tilt"] and row["published"])
+
+
+@pytest.mark.slow
+def test_driven_waves_of_an_elastic_ring(checks):
+    """What eq. 3-12 gives within 2 % of what is legible, folds that the grid of the print explains, other optima."""
+    rows = [row for row in checks if row["source"].endswith("ch. 3")]
+    by = {name: [row for row in rows if row["quantity"] == name] for name in {row["quantity"] for row in rows}}
+    assert [row["verdict"] for row in by["driven_waviness"]] == ["agrees", "agrees"]
+    assert all(abs(row["deviation"]) < 0.02 for row in by["driven_waviness"])
+    assert {row["verdict"] for row in by["largest_stable_waviness"]} == {"rounding"}
+    assert all(0.65 < row["computed"] < 0.72 for row in by["largest_stable_waviness"])
+    assert {row["verdict"] for row in by["optimum_stiffness"] + by["optimum_load_support"]} == {"unexplained"}
 
 
 @pytest.mark.parametrize("entry", [row for row in zuk.ZUK_1972 if row.tilt], ids=lambda row: f"{row.tilt:g}")
@@ -178,7 +196,7 @@ def test_a_ring_that_finds_no_film_fails(monkeypatch):
 
     monkeypatch.setattr(ludwig_allen.quasi_static, "static_root", hung)
     failed = [row for row in ludwig_allen.checks() if row["verdict"] == "FAILED"]
-    assert {row["force_ratio"] for row in failed} == {5.0, 20.0}
+    assert {row["force_ratio"] for row in failed} == {5.0, 15.0, 20.0}
     assert [row["static"] for row in failed if row["force_ratio"] == 20] == [None]
     json.dumps(failed, allow_nan=False)
 

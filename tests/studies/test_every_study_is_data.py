@@ -42,6 +42,8 @@ SMALL = {
     "transmissibility": ("fmr_reference", {}, {"points": 31, "time_points": 2}),
     "vibration": ("housing_vibration", {}, {"points": 31, "runs": 1}),
     "warm-up": ("pump_seal", {}, {"hold": "2 s"}),
+    "wave-design": ("lebeck_driven", {"film.reynolds.cells_r": 4, "film.reynolds.cells_theta": 180},
+                    {"orders": [9], "rings": 5, "points": 7}),
     "wear": ("run_in", {}, {"duration": "30 min"}),
     "work-precision": ("fmr_reference", {"run.turns": 2}, {"tolerances": 2, "tightest": 1e-4, "repeats": 1,
                                                            "samples": 20}),

@@ -440,7 +440,9 @@ def test_an_interruption_keeps_the_steps(run_in, tmp_path, monkeypatch):
     assert run_study("wear", read("run_in"), out, workers=1)["profile"] == run_in[0]["profile"]
 
 
-def test_wavy_faces_are_sent_to_the_study_that_knows_how_their_crests_wear(tmp_path):
-    seal = sealdyn.example("lebeck_n3")
-    with pytest.raises(sealdyn.ScenarioError, match="how fast crests wear the study equilibrium says"):
-        sealdyn.study("wear", seal.with_({"contact.stator_wear_coefficient": 1e-15}))
+def test_pads_do_not_wear():
+    rough = {"roughness": "0.1 um", "compressive_strength": "300 MPa", "stator_wear_coefficient": 1e-16}
+    seal = sealdyn.example("rayleigh_pads").with_({"contact": rough})
+    with pytest.raises(sealdyn.ScenarioError) as error:
+        sealdyn.study("wear", seal)
+    assert error.value.key == "film.pads"

@@ -2,7 +2,8 @@
 
 Each short run starts from the last one's motion and goes on until its averages stay; the profile advances by Archard's
 law, each face by its own coefficient (studies/wear/rosenbrock.py says how, and what limits a step).  Accepted steps
-go to the journal at once: a study that was interrupted goes on from the last one.
+go to the journal at once: a study that was interrupted goes on from the last one.  Wavy faces wear around the circle,
+too, from balance to balance (studies/wear/waves.py).
 """
 
 from dataclasses import dataclass
@@ -16,6 +17,7 @@ from ...dynamics.warm_state import at_work
 from ...quantities import in_words
 from ...scenario.errors import ScenarioError
 from ...scene.film import coned
+from ...scene.patterns import waves_of
 from ...status import Status
 from ...units import Time
 from .. import Info
@@ -36,12 +38,16 @@ INFO = Info(
     timed=("run_in", 7),
     warm="The temperature is that of the unworn faces, held while they wear.",
     asks="How do the faces wear over the hours?",
-    of_waves="; how fast crests wear the study equilibrium says, with wear coefficients in [contact]",
+    wavy=True,
     units={
         **{f"history/{name}": unit for name, unit in HISTORY.items()}, "radius": "m", "profile/stator": "m",
         "profile/rotor": "m", "profile/gap": "m", "pv": "Pa m/s", "coefficients": "1/Pa",
+        # Of wavy faces.
+        **dict.fromkeys(("waviness", "clearance", "amplitudes", "shape", "made"), "m"), "angle": "rad", "life": "s",
+        **dict.fromkeys(("load_support", "left_out", "waves", "life_share"), "1"),
     },
-    along={"history": ("time",), "profile": ("history/time", "radius"), "pv": ("history/time", "radius")},
+    along={"history": ("time",), "amplitudes": ("history/time", "harmonic"), "shape": ("history/time", "angle"),
+           "profile": ("history/time", "radius"), "pv": ("history/time", "radius")},
 )  # fmt: skip
 # Profiles drawn of one face; of the depth computed: what is extrapolated further is told, not drawn; of its thickness:
 # a film that changes by less is a flat line.
@@ -68,16 +74,31 @@ class Settings:
     """Rates that differ by less over the face are those of a profile that has run in."""
     run_in: Literal["stop", "extrapolate", "go on"] = "stop"
     """What then: stop, extrapolate to the duration at a constant rate, or go on."""
+    harmonics: Annotated[int, Field(ge=1, le=16)] = 10
+    """Multiples of the waves' order that the worn shape of wavy faces has."""
+    travelling: bool = False
+    """Waves that travel slowly around their ring, a whole number past each place: they wear both faces evenly."""
+    life: Annotated[float, Field(gt=0, lt=1)] = 0.5
+    """Share of the waviness that is left where the life of a wave is over."""
 
 
 def run(scenario, settings, tools) -> Answer:
     """The history of both faces, and why it ends."""
     wears = _coefficients(scenario)
     radius = _radii(scenario.scene.film, settings.nodes)
-    hats, rough = HatBasis(radius), scenario.scene.contact.roughness
+    rough = scenario.scene.contact.roughness
     # What the averages may be wrong by: a tenth of what a step may, on the depth of about a roughness.
     # Worn at the temperature of the unworn faces.
     scene, warm = at_work(scenario.scene)
+    if waves_of(scene):
+        from .waves import BalancesOfWaves
+        from .wavy_answer import answer_of
+
+        balances = BalancesOfWaves(scene, radius, settings.harmonics, settings.travelling)
+        control = Control(rough, settings.accuracy, settings.step * rough)
+        rows, end = _history(balances, balances.basis, control, settings, tools)
+        return answer_of(balances, wears, rows, end, settings)
+    hats = HatBasis(radius)
     runs = ShortRunAverages(scene, radius, scenario.run.accuracy, 0.1 * settings.accuracy, settings.turns,
                     settings.patience)  # fmt: skip
     rows, end = _history(runs, hats, Control(rough, settings.accuracy, settings.step * rough), settings, tools)
@@ -101,7 +122,9 @@ def _coefficients(scenario) -> dict[str, float]:
         )  # fmt: skip
     if scene.film.model == "linear":
         raise ScenarioError(scenario.name, "film.model", '"linear"', 'a film that sees the worn faces: "auto"')
-    if scene.film.cavitation_pressure is not None:
+    if scene.film.pads:
+        raise ScenarioError(scenario.name, "film.pads", "pads", "none: pads do not wear here")
+    if scene.film.cavitation_pressure is not None and not waves_of(scene):
         raise ScenarioError(scenario.name, "film.cavitation_pressure", "a value", "nothing: worn faces have no floor")
     return wears
 
@@ -124,7 +147,7 @@ def _history(runs, hats, control, settings, tools) -> tuple[list[dict], dict]:
     rows, known = [], tools.journal.rows
     while f"step:{len(rows)}" in known:
         rows.append(known[f"step:{len(rows)}"])
-    last = rows[-1] if rows else {"time": 0.0, "depth": 0.0 * hats.radius, "volume": 0.0, "span": 0.0, "motion": None}
+    last = rows[-1] if rows else {"time": 0.0, "depth": 0.0 * hats.areas, "volume": 0.0, "span": 0.0, "motion": None}
     worn = WearState(last["time"], np.array(last["depth"]), last["volume"], last["span"], last["motion"])
     going_on = bool(rows)
     try:
@@ -148,20 +171,22 @@ def _history(runs, hats, control, settings, tools) -> tuple[list[dict], dict]:
 
 def _row(worn, average, hats) -> dict:
     rate, _ = hats.rates(average.nodal)
+    face = hats.over_face(rate)
     touching = int(np.sum(rate > 0.01 * rate.max()))
     return {
         "time": worn.time, "depth": worn.depth.tolist(), "volume": worn.volume, "span": worn.span,
-        "motion": worn.motion, "rate": rate.tolist(), "coarse": 0 < touching < FEW, "seen": average.row,
+        "motion": worn.motion, "rate": rate.tolist(), "fastest": float(face.max()), "mean": float(face.mean()),
+        "uneven": float(unevenness(face)), "coarse": 0 < touching < FEW, "seen": average.row,
     }  # fmt: skip
 
 
 def _ended(rows, settings, control) -> dict | None:
     """Why the history ends here, if it does: kind, time (s) and a sentence."""
     row = rows[-1]
-    rate, time, seen = np.array(row["rate"]), row["time"], row["seen"]
+    time, seen = row["time"], row["seen"]
     left = settings.duration - time
     lift_off = seen["contact_force"] <= TOUCH * seen["closing_force"]
-    faded = seen["contact_force"] <= FADED * seen["closing_force"] and rate.max() * left < control.tolerance
+    faded = seen["contact_force"] <= FADED * seen["closing_force"] and row["fastest"] * left < control.tolerance
     if lift_off or (left > 0.0 and faded):
         before = rows[-2]["time"] if len(rows) > 1 else 0.0
         when = f"between {_time(before)} and {_time(time)}" if time else "from the start"
@@ -169,11 +194,11 @@ def _ended(rows, settings, control) -> dict | None:
         return {"kind": "lift-off", "time": time, "said": f"{what} {when}, and nothing wears any more"}
     if left <= 0.0:
         return {"kind": "duration", "time": time, "said": f"worn for {_time(time)}"}
-    if settings.run_in != "go on" and unevenness(rate) < settings.even:
+    if settings.run_in != "go on" and row["uneven"] < settings.even:
         said = (
             f"run in after {_time(time)}: the depth rates over the face are even within "
             f"{in_words('share', settings.even, digits=3)}, "
-            f"{in_words('wear_rate', rate.mean())}"
+            f"{in_words('wear_rate', row['mean'])}"
         )
         return {"kind": "run-in", "time": time, "said": said}
     return None

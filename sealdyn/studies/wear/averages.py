@@ -66,7 +66,7 @@ class ShortRunAverages:
         self.period = probe.period()
         if self.period is None:
             raise SceneError("shaft.speed", "forcing without a common period", "commensurate, constant forcing")
-        self.stiffness, self.shares = _supports(self.scene)
+        self.stiffness, self.shares = supports_of(self.scene)
         self.wears = np.array([scene.contact.stator_wear_coefficient, scene.contact.rotor_wear_coefficient])
         self.difference = DIFFERENCE * rough
         self.unstable = verdict(probe.model.linear_scene().modes()) == "unstable"
@@ -244,7 +244,7 @@ def _level(film) -> Profile:
     return Profile((film.inner_radius, film.outer_radius), (0.0, 0.0))
 
 
-def _supports(scene) -> tuple[float, dict[str, float]]:
+def supports_of(scene) -> tuple[float, dict[str, float]]:
     """Stiffness (N/m) of the supports in series, and by how much each ring's axial unknown moves per change of the
     gap."""
     rings = {"stator_z": (scene.stator, 1.0), "rotor_z": (scene.rotor, -1.0)}

@@ -122,6 +122,10 @@ class HatBasis:
         exchange *= np.where(exchange < 0.0, keep[:, None], keep[None, :])
         return (nodal + exchange.sum(axis=1)) / self.areas, False
 
+    def over_face(self, rate) -> np.ndarray:
+        """Depth rates (m/s) at places of the face."""
+        return np.asarray(rate)
+
     def largest(self, scatter) -> float:
         """Most that a depth rate (m/s) may be wrong by where each of `nodal` is by `scatter` (n,) m^3/s."""
         return float(np.max(np.abs(np.linalg.inv(self.mass)) @ np.abs(scatter)))
