@@ -151,11 +151,13 @@ def variables(answer: dict, units: dict, along: dict[str, list[str] | tuple[str,
 
     `units` {path or its end, or "*" for all others: unit}; `along` {table, or path of a column: names of what it lies
     along, in the order of its axes}: columns of the same table, paths of columns or axes of the answer, or else a new
-    name for the axis.  Of rows the first dimension is that of the rows; a column of theirs that `along` names is a
-    coordinate of it.  Axes that are not named have dimensions of their own.
+    name for the axis; a name that ends in "?" counts only where there is such a column.  Of rows the first dimension is
+    that of the rows; a column of theirs that `along` names is a coordinate of it.  Axes that are not named have
+    dimensions of their own.
     """
     found, units = columns(answer), units_of(answer, units)
-    told = {table: [_path(answer, table, name, found) for name in names] for table, names in along.items()}
+    told = {table: [path for name in names if (path := _path(answer, table, name.rstrip("?"), found)) in found
+                    or not name.endswith("?")] for table, names in along.items()}  # fmt: skip
     axes = {key for keys in told.values() for key in keys if key in found and found[key].values.ndim == 1}
     named = {key for key in axes if not found[key].rows}
     out, sizes = [], {}

@@ -25,6 +25,8 @@ STIFFNESS_UNITS = [["N/m", "N/rad", "N/rad"], ["N", "N*m/rad", "N*m/rad"], ["N",
 DAMPING_UNITS = [[u.replace("/m", "*s/m").replace("/rad", "*s/rad") if "/" in u else u + "*s" for u in row]
                  for row in STIFFNESS_UNITS]  # fmt: skip
 AXES = ("speed", "frequency", "coning")
+# Rows and columns of a matrix.
+ELEMENTS, FORCES = ("force", "motion"), ("force", "moment_x", "moment_y")
 NAMES = [f"{letter}_{row}_{column}" for letter in "kd" for row in ORDER for column in ORDER]
 INFO = Info(
     timed=("fmr_reference", 2),
@@ -46,8 +48,9 @@ INFO = Info(
         **dict(zip(NAMES, [unit for row in STIFFNESS_UNITS + DAMPING_UNITS for unit in row], strict=True)),
     },
     along={
-        **{f"against_{name}": (name,) for name in ("speed", "clearance", "tilt", "frequency")},
-        "map": AXES, "table": ("row",),
+        **dict.fromkeys(("stiffness", "damping", "synchronous", "tilted"), ELEMENTS),
+        **{f"against_{name}": (name, *ELEMENTS) for name in ("speed", "clearance", "tilt", "frequency")},
+        "map": ("speed", "frequency", "coning?", *ELEMENTS), "table": ("row",),
     },
 )  # fmt: skip
 # Elements in tilt: name, row, column, style.
@@ -99,13 +102,21 @@ def run(scenario, settings, tools) -> Answer:
         from ._grooved import coefficients_over_grooves
 
         answer = coefficients_over_grooves(scenario, scene, settings)
-        names = {"order": list(ORDER), "stiffness_units": STIFFNESS_UNITS, "damping_units": DAMPING_UNITS}
+        names = {
+            "order": list(ORDER),
+            "motion": list(ORDER),
+            "force": list(FORCES),
+            "stiffness_units": STIFFNESS_UNITS,
+            "damping_units": DAMPING_UNITS,
+        }
         table = {"table": columns_of(answer.numbers["map"])} if "map" in answer.numbers else {}
         return replace(answer, numbers=answer.numbers | names | table)
     model, speed = Model(scene, ACCURACY), scene.shaft.speed
     tilted = model if model.unknowns.with_tilt else Model(tilting(scene), ACCURACY)
     numbers = {
         "order": list(ORDER),
+        "motion": list(ORDER),
+        "force": list(FORCES),
         "film": model.interface.name,
         **_listed(matrices(model, State())),
         "stiffness_units": STIFFNESS_UNITS,

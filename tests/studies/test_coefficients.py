@@ -196,4 +196,10 @@ def test_its_dataset_lies_along_speed_frequency_and_coning(tmp_path):
     axes = ("map.speed", "map.frequency", "map.coning")
     assert data["map.stiffness"].dims[:3] == axes and data["map.clearance"].dims == axes
     assert data["map.coning"].attrs["units"] == "rad" and data["map.speed"].size == 4
+    # Elements by what they are, with coning and without.
+    assert data["map.stiffness"].dims[3:] == data["stiffness"].dims == ("force", "motion")
+    without = sealdyn.study("coefficients", seal, points=2, workers=1, frequency="0, 100 Hz").data["map.stiffness"]
+    assert without.dims == ("map.speed", "map.frequency", "force", "motion")
+    cross = without.sel(force="moment_x", motion="tilt_y")
+    assert cross.values == pytest.approx(without.values[:, :, 1, 2])
     assert text_trouble(draw(out)) == ([], [])
