@@ -31,7 +31,7 @@ from ..scene.contact import touch_height
 from ..scene.film import aligned_gaps, coned
 from ..scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE, density_of
 from ..scene.scene import Closing, Scene, SceneError
-from ..scene.variants import frozen_at_start
+from ..scene.variants import frozen_at_start, refuse_uneven
 
 ERRORS = ("film_force", "leakage", "torque", "axial_stiffness", "tilt_stiffness")
 # Speeds between two of which one has more roots that grow.
@@ -173,6 +173,7 @@ def _mapped(scene, speeds, frequencies) -> dict:
 
 def ring_of(scene) -> Ring | None:
     """The ring that floats, None where both do, or where it has no inertia."""
+    refuse_uneven(scene)
     floating = [name for name in ("stator", "rotor") if getattr(scene, name).support is not None]
     if len(floating) != 1:
         return None

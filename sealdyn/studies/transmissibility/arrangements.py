@@ -19,7 +19,7 @@ from ...scene.excitation import Housing
 from ...scene.film import Coefficients, aligned_gaps, coning_change
 from ...scene.rings import ROTOR, STATOR
 from ...scene.scene import Initial, Scene
-from ...scene.variants import frozen_at_start, with_both_flexible_rings, with_single_flexible_ring
+from ...scene.variants import frozen_at_start, refuse_uneven, with_both_flexible_rings, with_single_flexible_ring
 from ...simulation.selection import choose_method
 from ...solvers.contract import Recorder, Status
 from ...solvers.integrate import solve
@@ -129,11 +129,14 @@ def seals_of(scene: Scene) -> dict[str, Arrangement]:
     """The arrangements {"fmr": ..., "fms": ..., "fmsr": ...} of the scene's seal, nothing imposed, clearance kept, or
     the closing force of heated faces."""
     scene = frozen_at_start(scene)
+    refuse_uneven(scene)
     if scene.film.heat is None:
         # That of heated faces follows the speed, under the same closing force.
         scene = frozen_at_start(scene, clearance=Model(scene).clearance)
     quiet = replace(scene, housing=Housing(), initial=Initial(), shaft=replace(scene.shaft, whirl=[], motion=None))
-    quiet = replace(quiet, rotor=replace(quiet.rotor, axial_runout=[]))
+    rings = {"rotor": replace(quiet.rotor, axial_runout=[], mass_centre=None),
+             "stator": replace(quiet.stator, mass_centre=None)}  # fmt: skip
+    quiet = replace(quiet, **rings)
     return {name: Arrangement(quiet, name) for name in SEALS}
 
 
