@@ -22,7 +22,7 @@ from ..dynamics.linearisation import moves_with_speed
 from ..dynamics.model import Model
 from ..faces.geometry import smallest_gap
 from ..scene.scene import Scene
-from ..scene.variants import frozen_at_start, unforced
+from ..scene.variants import frozen_at_start, refuse_uneven, unforced
 
 SPEED_AT = equations.LEG_AT + ROTOR_SPEED
 # A solution's residual, relative to the scales of force; central-difference step of the linearisation.
@@ -62,6 +62,7 @@ class RotatingWave:
     and axial displacements among them and their signs in the gap."""
 
     def __init__(self, model: Model):
+        refuse_uneven(model.scene)
         self.model, self.segment, self.n = model, model.segment(), model.unknowns.n
         self.places = model.unknowns.rate_places
         names = model.unknowns.names

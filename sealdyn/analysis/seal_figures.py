@@ -219,8 +219,10 @@ def ring_modes(scene: Scene) -> list[dict]:
             continue
         support = ring.support
         axial = ring.mass, support.axial_stiffness, support.axial_damping
-        tilt = ring.transverse_inertia, *support.tilt()
-        for motion, (inertia, stiffness, damping) in {"axial": axial, "tilt": tilt}.items():
+        mean, damping = support.tilt()
+        spread = abs(support.tilt_difference())
+        tilts = [("tilt", (ring.transverse_inertia, k, damping)) for k in sorted({mean - spread, mean + spread})]
+        for motion, (inertia, stiffness, damping) in [("axial", axial), *tilts]:
             if inertia > 0.0 and stiffness > 0.0:
                 modes.append({"ring": name, "motion": motion,
                               "frequency": math.sqrt(stiffness / inertia) / (2 * math.pi),

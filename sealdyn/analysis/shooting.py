@@ -20,6 +20,7 @@ from ..faces.film_thickness import h_min
 from ..faces.geometry import DZ_RATE, GX, GX_RATE, GY, GY_RATE, MEAN_SPIN
 from ..scene.patterns import face_orders
 from ..scene.scene import SceneError
+from ..scene.variants import uneven_supports
 from ..simulation.selection import choose_method
 from ..solvers.contract import Counts, Recorder, SolverFailure, Status
 from ..solvers.integrate import solve
@@ -251,7 +252,7 @@ class ForcedWave:
         if self.turning is not None:
             # A pattern has to turn with the forcing.
             speeds.add(self.turning(self.model.f, self.segment.gap_state(0.0, np.zeros(self.segment.size))))
-        elif face_orders(scene):
+        elif face_orders(scene) or uneven_supports(scene):
             one = False
         if not one or len(speeds) > 1 or unknowns.massless or unknowns.coulomb_rings:
             raise NotOneSpeed("the forcing does not turn at one speed alone")

@@ -5,7 +5,10 @@ both rings (k = stator, rotor; W_k the spin of the carrier; sg = +1 stator, -1 r
 
     m z'' = sg (F_film - F_closing) - D_z (z' - z_c') - K_z (z - z_c)
     I gamma'' = sg M_film + i J W gamma' - D_s [(gamma - gamma_c)' - i W (gamma - gamma_c)]
-                - K_s (gamma - gamma_c - gamma_own)
+                - K_s e - dK exp(2 i (phi_k + a)) conj(e) + M_mass,   e = gamma - gamma_c - gamma_own
+
+dK of a support with two tilt stiffnesses, whose axes, at `a`, turn with the carrier (phi_k); M_mass the moment of a
+centre of mass off the axis, of unbalance and weight.
 **Valid** small tilts (1e-4 rad: exact to 1e-8); a changing speed drops -i J W' gamma.
 Contact of the faces adds to F_film and M_film; friction of a secondary seal (dynamics/secondary_seal.py) acts on its
 ring, and a ring that sticks follows its carrier: gamma' = gamma_c' + i W (gamma - gamma_c).
@@ -15,6 +18,8 @@ or a secondary seal the impulse of contact, then the works and the sum of absolu
 rings, the index of the works, whether there are two more of them, then the imposed motion of the segment
 (dynamics/imposed_motion.py).
 """
+
+import math
 
 from ..faces.contact import contact_load
 from ..faces.geometry import (
@@ -45,6 +50,8 @@ from ..numerics.kernel import call_seal, inner_kernel, outer_kernel
 from .imposed_motion import (
     CLOSING_AT,
     INNER_AT,
+    LOAD_X,
+    LOAD_Y,
     OUTER_AT,
     OWN_X,
     OWN_X_RATE,
@@ -74,20 +81,23 @@ from .imposed_motion import (
 # seal compile it.
 FLOATS, MASS, INERTIA, POLAR, AXIAL_K, AXIAL_D, TILT_K, TILT_D, AT_Z, AT_TILT, AT_Z_RATE, AT_TILT_RATE = range(12)
 SEAL_LINE, SEAL_RADIUS, SEAL_BAND, SEAL_SMOOTH, STUCK, ONSET, SEAL_KERNEL = 12, 13, 14, 15, 16, 17, 20
-RING = 21
+# Half the difference of two tilt stiffnesses, and the angle of the first one's axis.
+UNEVEN_K, AXIS = 21, 22
+RING = 23
 WORKS_AT = 2 * RING
 EXTENDED = WORKS_AT + 1
 LEG_AT = WORKS_AT + 2
 
 # Scratch `w`: imposed state of both rings, their own state, the net force and moments on each; then per ring the
 # friction of its secondary seal, its sliding speed, how far what it must hold lies outside what it can, and the
-# acceleration that follows the carrier.
+# acceleration that follows the carrier; and the cosine and sine of twice the angle of an uneven support.
 OWN_STATE = 2 * PER_RING
 NET = OWN_STATE + 2 * 6
 SEALS = NET + 2 * 3
 SEAL_SPEED, SEAL_EXCESS, FOLLOWING = 3, 4, 5
 PER_SEAL = 8
-SCRATCH = SEALS + 2 * PER_SEAL
+AXES = SEALS + 2 * PER_SEAL
+SCRATCH = AXES + 2 * 2
 
 # The works, in the order of `y`; the last two only with contact or a secondary seal.
 WORKS = ("support_damper", "film", "closing", "carrier", "gyroscopic", "contact", "secondary_seal")
@@ -133,6 +143,25 @@ def kinematics(tau, y, yp, p, w, s):
     s[OUTER_PRESSURE] = leg[OUTER_AT] + leg[OUTER_AT + 1] * tau
     s[TEMPERATURE] = leg[TEMPERATURE_AT] + leg[TEMPERATURE_AT + 1] * tau
     s[CONING_CHANGE], s[CONING_RATE] = coning_at(tau, leg)
+    for k in range(2):
+        if p[k * RING + UNEVEN_K] != 0.0:
+            twice = 2.0 * ((s[STATOR_ANGLE] if k == 0 else s[ROTOR_ANGLE]) + p[k * RING + AXIS])
+            w[AXES + 2 * k], w[AXES + 2 * k + 1] = math.cos(twice), math.sin(twice)
+
+
+@inner_kernel()
+def _tilt_springs(k, p, w):
+    """Moments (N m) of ring k's support springs."""
+    ring, c, x, axes = k * RING, k * PER_RING, OWN_STATE + 6 * k, AXES + 2 * k
+    e_x = w[x + TILT_X] - w[c + TILT_X] - w[c + OWN_X]
+    e_y = w[x + TILT_Y] - w[c + TILT_Y] - w[c + OWN_Y]
+    uneven = p[ring + UNEVEN_K]
+    if uneven == 0.0:
+        return -p[ring + TILT_K] * e_x, -p[ring + TILT_K] * e_y
+    return (
+        -p[ring + TILT_K] * e_x - uneven * (w[axes] * e_x + w[axes + 1] * e_y),
+        -p[ring + TILT_K] * e_y - uneven * (w[axes + 1] * e_x - w[axes] * e_y),
+    )
 
 
 @inner_kernel()
@@ -153,13 +182,12 @@ def _net(tau, k, p, w, s, power):
     damper_x = -p[ring + TILT_D] * (v_x - w[c + TILT_X_RATE] + spin * d_y)
     damper_y = -p[ring + TILT_D] * (v_y - w[c + TILT_Y_RATE] - spin * d_x)
     spring = -p[ring + AXIAL_K] * (w[x + Z] - w[c + Z])
-    spring_x = -p[ring + TILT_K] * (d_x - w[c + OWN_X])
-    spring_y = -p[ring + TILT_K] * (d_y - w[c + OWN_Y])
+    spring_x, spring_y = _tilt_springs(k, p, w)
     gyro_x, gyro_y = -p[ring + POLAR] * spin * v_y, p[ring + POLAR] * spin * v_x
 
     w[net] = sign * (s[FORCE] + s[CONTACT_FORCE] - closing) + damper + spring
-    w[net + 1] = sign * (s[MOMENT_X] + s[CONTACT_X]) + damper_x + spring_x + gyro_x
-    w[net + 2] = sign * (s[MOMENT_Y] + s[CONTACT_Y]) + damper_y + spring_y + gyro_y
+    w[net + 1] = sign * (s[MOMENT_X] + s[CONTACT_X]) + damper_x + spring_x + gyro_x + w[c + LOAD_X]
+    w[net + 2] = sign * (s[MOMENT_Y] + s[CONTACT_Y]) + damper_y + spring_y + gyro_y + w[c + LOAD_Y]
 
     # An unknown that is not integrated (tilt of an axial scene, z of a tilt scene) has rate zero.
     power[0] += damper * v + damper_x * v_x + damper_y * v_y
@@ -175,10 +203,10 @@ def _net(tau, k, p, w, s, power):
 
 @inner_kernel()
 def _works(tau, p, w, s, yp, at):
-    """Powers of the elements into yp[at:]: support dampers, film, closing force, carriers, gyroscopic
-    term (zero), contact and secondary seals, and the sum of absolute powers, springs included; the contact force, whose
-    integral is the impulse, just before them.  The springs' energy is a state function,
-    so what counts as work is that of their moving ends (carrier, own misalignment)."""
+    """Powers of the elements into yp[at:]: support dampers, film, closing force, carriers (and what turns with them:
+    axes of springs, unbalance; and weight), gyroscopic term (zero), contact and secondary seals, and the sum of
+    absolute powers, springs included; the contact force, whose integral is the impulse, just before them.  The springs'
+    energy is a state function, so what counts as work is that of their moving ends (carrier, own misalignment)."""
     count = PLAIN
     if p[EXTENDED] != 0.0:
         count, yp[at - 1] = PLAIN + 2, s[CONTACT_FORCE]
@@ -193,11 +221,17 @@ def _works(tau, p, w, s, yp, at):
             if p[ring + AT_Z] >= 0.0:
                 power[3] -= p[ring + AXIAL_K] * (w[x + Z] - w[c + Z]) * w[c + Z_RATE]
             if p[ring + AT_TILT] >= 0.0:
-                e_x = w[x + TILT_X] - w[c + TILT_X] - w[c + OWN_X]
-                e_y = w[x + TILT_Y] - w[c + TILT_Y] - w[c + OWN_Y]
-                power[3] -= p[ring + TILT_K] * (
-                    e_x * (w[c + TILT_X_RATE] + w[c + OWN_X_RATE]) + e_y * (w[c + TILT_Y_RATE] + w[c + OWN_Y_RATE])
-                )
+                m_x, m_y = _tilt_springs(k, p, w)
+                power[3] += m_x * (w[c + TILT_X_RATE] + w[c + OWN_X_RATE])
+                power[3] += m_y * (w[c + TILT_Y_RATE] + w[c + OWN_Y_RATE])
+                power[3] += w[c + LOAD_X] * w[x + TILT_X_RATE] + w[c + LOAD_Y] * w[x + TILT_Y_RATE]
+                if p[ring + UNEVEN_K] != 0.0:
+                    # What turning the axes of its springs takes.
+                    e_x = w[x + TILT_X] - w[c + TILT_X] - w[c + OWN_X]
+                    e_y = w[x + TILT_Y] - w[c + TILT_Y] - w[c + OWN_Y]
+                    spin_at = LEG_AT + (STATOR_SPEED if k == 0 else ROTOR_SPEED)
+                    across = w[AXES + 2 * k] * 2.0 * e_x * e_y - w[AXES + 2 * k + 1] * (e_x * e_x - e_y * e_y)
+                    power[3] += p[ring + UNEVEN_K] * across * (p[spin_at] + p[spin_at + 1] * tau)
     exchanged = abs(springs)
     for i in range(count):
         exchanged += abs(power[i])
@@ -282,4 +316,7 @@ def energy(p, w):
             e_y = w[x + TILT_Y] - w[c + TILT_Y] - w[c + OWN_Y]
             total += 0.5 * p[ring + INERTIA] * (w[x + TILT_X_RATE] ** 2 + w[x + TILT_Y_RATE] ** 2)
             total += 0.5 * p[ring + TILT_K] * (e_x * e_x + e_y * e_y)
+            if p[ring + UNEVEN_K] != 0.0:
+                along = w[AXES + 2 * k] * (e_x * e_x - e_y * e_y) + w[AXES + 2 * k + 1] * 2.0 * e_x * e_y
+                total += 0.5 * p[ring + UNEVEN_K] * along
     return total

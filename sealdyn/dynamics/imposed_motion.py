@@ -13,6 +13,7 @@ import numpy as np
 
 from ..faces.geometry import CONING_CHANGE, INNER_PRESSURE, OUTER_PRESSURE, TEMPERATURE, VISCOSITY
 from ..numerics.kernel import inner_kernel, outer_kernel
+from ..numerics.piecewise_linear import points
 from ..scene.film import coning_change
 from ..scene.gas import viscosity_of
 from ..scene.rings import ROTOR, STATOR
@@ -66,13 +67,15 @@ SWEEPS_AT, MOTION_AT, OSCILLATORS = 20, 21, 23
 ROW = 9
 
 # Kinds: axial motion of the carrier; tilt of the carrier turning with the phase; tilt of the carrier about
-# a fixed axis; the ring's own misalignment in its carrier, which its springs feel.
-AXIAL, TURNING, FIXED_AXIS, OWN = range(4)
+# a fixed axis; the ring's own misalignment in its carrier, which its springs feel; a moment (N m) on the ring, and that
+# of a mass off the axis, whose amplitude is mass, eccentricity and arm multiplied (kg m^2).
+AXIAL, TURNING, FIXED_AXIS, OWN, MOMENT, UNBALANCE = range(6)
 
-# Slots of the imposed state, per ring: carrier displacement and rate, own misalignment, carrier acceleration.
+# Slots of the imposed state, per ring: carrier displacement and rate, own misalignment, carrier acceleration, moments.
 Z, TILT_X, TILT_Y, Z_RATE, TILT_X_RATE, TILT_Y_RATE, OWN_X, OWN_Y, OWN_X_RATE, OWN_Y_RATE = range(10)
 Z_ACCELERATION, TILT_X_ACCELERATION, TILT_Y_ACCELERATION = range(10, 13)
-PER_RING = 13
+LOAD_X, LOAD_Y = 13, 14
+PER_RING = 15
 
 
 def harmonics_of_segment(shaft, housing, rotor, stator, interval: Interval) -> np.ndarray:
@@ -105,6 +108,14 @@ def harmonics_of_segment(shaft, housing, rotor, stator, interval: Interval) -> n
         stator.misalignment_direction,
         order=1.0,
     )
+    for k, ring, speed in ((STATOR, stator, stator.speed), (ROTOR, rotor, shaft.speed)):
+        if ring.support and ring.mass_centre:
+            centre = ring.mass_centre
+            arm = ring.mass * centre.axial
+            # The moment of a force across the shaft is a quarter turn ahead of it.
+            add(k, MOMENT, arm * housing.gravity, housing.gravity_direction + 0.5 * math.pi)
+            if any(points(speed)):
+                add(k, UNBALANCE, arm * centre.eccentricity, centre.phase, order=1.0)
     for whirl in shaft.whirl:
         add(ROTOR, TURNING, whirl.angle, whirl.phase, order=whirl.ratio)
     for runout in rotor.axial_runout:
@@ -184,7 +195,14 @@ def imposed_state(tau, p, c):
             x, x_rate, x_acceleration = x * p[row + 4], x_rate * p[row + 4], x_acceleration * p[row + 4]
         else:
             y, y_rate, y_acceleration = a * sin, a_rate * sin + a * w * cos, along * sin + across * cos
-        if kind == OWN:
+        if kind == MOMENT:
+            c[base + LOAD_X] += x
+            c[base + LOAD_Y] += y
+        elif kind == UNBALANCE:
+            # -m r'' on its arm.
+            c[base + LOAD_X] += y_acceleration
+            c[base + LOAD_Y] -= x_acceleration
+        elif kind == OWN:
             c[base + OWN_X] += x
             c[base + OWN_Y] += y
             c[base + OWN_X_RATE] += x_rate

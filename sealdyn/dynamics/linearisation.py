@@ -11,9 +11,9 @@ from ..scene.patterns import grooves_of, waves_of
 from ..scene.rings import ROTOR, STATOR
 from ..scene.scene import SceneError
 from .equilibrium import axial_shift
-from .imposed_motion import AXIAL, FIXED_AXIS, OWN, ROW
+from .imposed_motion import AXIAL, FIXED_AXIS, MOMENT, OWN, ROW, TURNING, UNBALANCE
 from .interface import rest_state
-from .intervals import constant_and_slope
+from .intervals import constant_and_slope, modulo_turn
 from .modes import MOTIONS, QUARTER_TURN, FilmDoubt, Harmonic, LinearScene, RingNumbers
 from .stability_thresholds import Whirl, all_at_once, one_by_one
 from .swept_motion import sweeps_of
@@ -61,6 +61,8 @@ def linear_scene(model, interval, speed: float | None = None, shift: float | Non
                 tilt_stiffness=tilt_k,
                 tilt_damping=tilt_d,
                 spin=w_s if k == STATOR else w_r,
+                uneven=support.tilt_difference() if support else 0.0,
+                axis=modulo_turn(interval.angles[1 - k]) + support.tilt_axis if support else 0.0,
             )
         )
     if linear_in_speed(model, interval):
@@ -75,6 +77,9 @@ def linear_scene(model, interval, speed: float | None = None, shift: float | Non
             film = interface.linear_film(s, steps) if interface.stores else None
             slopes = interface.slopes_about(s, steps, film=film)
         goes_with, stiffness = 0.0, slopes.stiffness
+    if film is not None and any(ring.turns_uneven for ring in rings):
+        key = f"{model.unknowns.turning_supports[0]}.tilt_stiffness"
+        raise SceneError(key, "two that turn, beside a film that stores", "one, or a film with one stiffness")
     error_k, error_d = slopes.stiffness_error, slopes.damping_error
     tilt = max(error_k[1, 1], error_k[2, 2]), max(error_d[1, 1], error_d[2, 2])
     if not goes_with:
@@ -204,7 +209,11 @@ def harmonics(segment) -> list[Harmonic]:
         else:
             shape[1], shape[2] = phasor * cos, phasor * sin
         none = np.zeros(3, dtype=complex)
-        found.append(Harmonic(a1, int(ring), none if kind == OWN else shape, shape if kind == OWN else none))
+        if kind == UNBALANCE:
+            shape *= 1j * a1**2
+        moves, own = kind in (AXIAL, TURNING, FIXED_AXIS), kind == OWN
+        moment = shape if kind in (MOMENT, UNBALANCE) else None
+        found.append(Harmonic(a1, int(ring), shape if moves else none, shape if own else none, moment))
     return found
 
 
@@ -212,7 +221,7 @@ def steady_motion(segment):
     """Linear steady state of a segment: a function of its time (s) giving (displacements, rates) (m, rad) of all
     floating rings' three unknowns each; the list of (harmonic, complex answer); and the LinearScene."""
     linear = segment.model.linear_scene(segment.interval)
-    answers = [(h, linear.response(h)) for h in harmonics(segment)]
+    answers = linear.answers(harmonics(segment))
 
     def at(tau):
         q, rate = np.zeros(len(linear.mass)), np.zeros(len(linear.mass))

@@ -9,6 +9,8 @@ from functools import cached_property
 
 import numpy as np
 
+from ..scene.rings import RING_NAMES
+from ..scene.scene import SceneError
 from .characteristic import roots
 
 # Rotation by 90 degrees in the tilt plane: multiplication by i of tilt_x + i tilt_y.
@@ -21,7 +23,8 @@ MOTIONS = ("axial", "tilt")
 
 @dataclass(frozen=True)
 class RingNumbers:
-    """One ring: sign (+1 stator, -1 rotor), whether it floats, inertia, support and spin (SI)."""
+    """One ring: sign (+1 stator, -1 rotor), whether it floats, inertia, support and spin (SI); of two tilt stiffnesses
+    `tilt_stiffness` is the mean, `uneven` half the difference, and `axis` (rad) where the first one's axis stands."""
 
     sign: float
     floats: bool
@@ -33,14 +36,30 @@ class RingNumbers:
     tilt_stiffness: float
     tilt_damping: float
     spin: float
+    uneven: float = 0.0
+    axis: float = 0.0
+
+    @property
+    def turns_uneven(self) -> bool:
+        """Whether its support is another one at every angle of the shaft."""
+        return bool(self.floats and self.uneven and self.spin)
 
     def support_damping(self) -> np.ndarray:
         """Damping matrix (3, 3) of the support, in N s/m and N m s/rad."""
         return diagonal(self.axial_damping, self.tilt_damping)
 
     def support_stiffness(self) -> np.ndarray:
-        """Stiffness matrix (3, 3) of the support, in N/m and N m/rad."""
-        return diagonal(self.axial_stiffness, self.tilt_stiffness)
+        """Stiffness matrix (3, 3) of the support, in N/m and N m/rad; the mean of one that turns uneven."""
+        stiffness = diagonal(self.axial_stiffness, self.tilt_stiffness)
+        if self.uneven and not self.turns_uneven:
+            stiffness += 2.0 * self.twice_a_turn().real
+        return stiffness
+
+    def twice_a_turn(self) -> np.ndarray:
+        """Complex matrix C (3, 3) of an uneven support: beside its mean it is C exp(2 i W t) and the conjugate."""
+        matrix = np.zeros((3, 3), dtype=complex)
+        matrix[1:, 1:] = 0.5 * self.uneven * np.exp(2j * self.axis) * np.array([[1.0, -1j], [-1j, -1.0]])
+        return matrix
 
 
 def diagonal(axial: float, tilt: float) -> np.ndarray:
@@ -50,13 +69,14 @@ def diagonal(axial: float, tilt: float) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Harmonic:
-    """One imposed harmonic, Re(amplitude exp(i frequency t)): carrier and own misalignment of one ring,
-    complex arrays (3,) in the order (z, tilt_x, tilt_y)."""
+    """One imposed harmonic, Re(amplitude exp(i frequency t)): carrier and own misalignment of one ring, and the moment
+    on it (None: none), complex arrays (3,) in the order (z, tilt_x, tilt_y)."""
 
     frequency: float
     ring: int
     carrier: np.ndarray
     own: np.ndarray
+    moment: np.ndarray | None = None
 
 
 @dataclass(frozen=True)
@@ -100,6 +120,7 @@ class LinearScene:
         self.rings, self.film_k, self.film_d, self.film = rings, film_stiffness, film_damping, film
         self.doubt = doubt or FilmDoubt()
         self.floating = [k for k, ring in enumerate(rings) if ring.floats]
+        self.turning = [rings[k] for k in self.floating if rings[k].turns_uneven]
         self.gap = np.hstack([rings[k].sign * np.eye(3) for k in self.floating])
         n = 3 * len(self.floating)
         self.mass, self.damping, self.stiffness = np.zeros((3, n, n))
@@ -117,6 +138,10 @@ class LinearScene:
     def eigen(self) -> tuple[np.ndarray, np.ndarray]:
         """Finite eigenvalues (m,) and displacement shapes (n, m), not to be changed; massless unknowns are allowed.
         Of a film that stores those of its own modes too, as far as film_modes.py looks."""
+        if self.turning:
+            from .turning_supports import exponents
+
+            return exponents(self)
         return self._eigen if self.film is None else self._coupled[:2]
 
     @cached_property
@@ -157,6 +182,7 @@ class LinearScene:
     def pencil(self) -> tuple[np.ndarray, ...]:
         """Matrices (m, m) of `left y = p right y`, y the displacements, the rates and what stands for a film that
         stores; of such a film also (m, N) `right` and (N, m) y on its unknowns, the same ones at any speed."""
+        self._constant("pencil")
         n = len(self.mass)
         if self.film is None:
             left = np.block([[np.zeros((n, n)), np.eye(n)], [-self.stiffness, -self.damping]])
@@ -197,7 +223,8 @@ class LinearScene:
     def motions(self) -> tuple | None:
         """Arguments of characteristic.roots, each of shape (2,): for the axial motion, and for the tilts as
         tilt_x + i tilt_y; None where they hang together, the film is not the same in all directions, or it stores."""
-        if self.film is not None or not (_isotropic(self.film_k) and _isotropic(self.film_d)):
+        uneven = any(self.rings[k].uneven for k in self.floating)
+        if uneven or self.film is not None or not (_isotropic(self.film_k) and _isotropic(self.film_d)):
             return None
         k, d, doubt, rings = self.film_k, self.film_d, self.doubt, []
         for r in (self.rings[i] for i in self.floating):
@@ -231,9 +258,10 @@ class LinearScene:
 
     def _errors(self, values) -> np.ndarray:
         """Bounds (m,) on the errors of `eigen`'s values (m,) (1/s): rounding of the matrix as a whole, times how much
-        each eigenvalue minds (backward error times condition number); and of a film that stores its answers' own.
+        each eigenvalue minds (backward error times condition number); of a film that stores, or supports that turn
+        uneven, its answers' own.
         **Source** Stewart & Sun (1990), Matrix Perturbation Theory, IV.2."""
-        if self.film is not None:
+        if self.film is not None or self.turning:
             from .film_modes import errors_of
 
             return errors_of(values)
@@ -255,6 +283,7 @@ class LinearScene:
     def state_matrix(self, places=None) -> np.ndarray:
         """First-order matrix (2n, 2n) on (displacements, rates), of the displacements at these `places` alone if they
         are given.  Raises ValueError for a film that stores, whose state is more, and if a mass is zero."""
+        self._constant("state matrix")
         if self.film is not None:
             raise ValueError("a film that stores has more to its state than displacements and rates")
         places = np.arange(len(self.mass)) if places is None else np.asarray(places)
@@ -269,23 +298,55 @@ class LinearScene:
         return matrix
 
     def response(self, harmonic: Harmonic) -> np.ndarray:
-        """Complex displacement amplitudes (n,) answering one imposed harmonic."""
+        """Complex displacement amplitudes (n,) answering one imposed harmonic.  Raises SceneError where supports turn
+        uneven: of these ask `answers`."""
+        self._constant("response at one frequency")
+        return self._response(harmonic)
+
+    def answers(self, harmonics) -> list[tuple[Harmonic, np.ndarray]]:
+        """Each imposed harmonic with its response (n,); where supports turn uneven also the frequencies that they add,
+        as harmonics without a cause."""
+        if self.turning:
+            from .turning_supports import sidebands
+
+            found, none = [], np.zeros(3, dtype=complex)
+            for harmonic in harmonics:
+                (_, own), *beside = sidebands(self, harmonic)
+                found += [(harmonic, own), *((Harmonic(w, harmonic.ring, none, none), q) for w, q in beside)]
+            return found
+        return [(harmonic, self._response(harmonic)) for harmonic in harmonics]
+
+    def _constant(self, what: str) -> None:
+        if self.turning:
+            key = f"{RING_NAMES[self.turning[0].sign < 0.0]}.support.tilt_stiffness"
+            raise SceneError(key, f"two that turn with their ring, of which there is no {what}", "one")
+
+    def _response(self, harmonic: Harmonic) -> np.ndarray:
         w = harmonic.frequency
         if self.film is not None:
             return self.at_frequency(w).response(harmonic)
-        force = np.zeros(len(self.mass), dtype=complex)
+        return np.linalg.solve(self.dynamic(w), self.load(harmonic))
+
+    def dynamic(self, w: float) -> np.ndarray:
+        """Dynamic stiffness (n, n) at a frequency (rad/s)."""
+        return self.stiffness + 1j * w * self.damping - w * w * self.mass
+
+    def load(self, harmonic: Harmonic) -> np.ndarray:
+        """Complex forces and moments (n,) of one imposed harmonic on rings at rest."""
+        w, force = harmonic.frequency, np.zeros(len(self.mass), dtype=complex)
         ring = self.rings[harmonic.ring]
         if ring.floats:
             at = 3 * self.floating.index(harmonic.ring)
             support_d, support_k = ring.support_damping(), ring.support_stiffness()
             carrier = support_k + 1j * w * support_d - ring.spin * support_d @ QUARTER_TURN
             force[at : at + 3] = carrier @ harmonic.carrier + support_k @ harmonic.own
+            if harmonic.moment is not None:
+                force[at : at + 3] += harmonic.moment
         else:
             film = self.film_k + 1j * w * self.film_d
             for a, k in enumerate(self.floating):
                 force[3 * a : 3 * a + 3] = -self.rings[k].sign * ring.sign * film @ harmonic.carrier
-        dynamic = self.stiffness + 1j * w * self.damping - w * w * self.mass
-        return np.linalg.solve(dynamic, force)
+        return force
 
     def relative(self, harmonic: Harmonic, answer: np.ndarray) -> np.ndarray:
         """Complex amplitude (3,) of (dz, g_x, g_y), stator minus rotor, for a response."""

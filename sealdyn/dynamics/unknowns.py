@@ -9,8 +9,9 @@ from ..scene.film import follows_speed
 from ..scene.patterns import alike_sectors, face_orders, faces_tilt, waves_of
 from ..scene.rings import RING_NAMES, ROTOR, STATOR
 from ..scene.sweep import largest_amplitude, tilts
+from ..scene.variants import turning_supports
 from . import equations
-from .imposed_motion import AXIAL, fluid_conditions, harmonics_of_segment
+from .imposed_motion import AXIAL, MOMENT, UNBALANCE, fluid_conditions, harmonics_of_segment
 from .intervals import largest_value
 from .native import SEAL_TYPE, Value
 from .secondary_seal import friction_on_ring
@@ -42,8 +43,9 @@ class Unknowns:
         ]
         self.coulomb_rings = [k for k in self.seals if self.seal(k).law == "coulomb"]
         self.extended = bool(scene.contact or self.seals)
-        # Contact and friction couple what a linear film keeps apart.
-        self.linear = linear = linear and not self.extended
+        self.turning_supports = turning_supports(scene)
+        # Contact, friction and supports that change as they turn couple what a linear film keeps apart.
+        self.linear = linear = linear and not self.extended and not self.turning_supports
         rings = {STATOR: scene.stator, ROTOR: scene.rotor}
         self.floats = {k: ring.support is not None for k, ring in rings.items()}
         starts = {STATOR: scene.initial.stator, ROTOR: scene.initial.rotor}
@@ -72,6 +74,8 @@ class Unknowns:
             self.reasons.append(f"faces of order {orders} press with a moment when aligned: rings rest tilted")
         if waves_of(scene) and not pressed:
             self.reasons.append("wavy faces: the gap and leakage have the waves, the film's forces are as given")
+        for name in self.turning_supports:
+            self.reasons.append(f"{name}: two tilt stiffnesses that turn, so that the tilts are driven twice a turn")
         if self.massless:
             self.reasons.append("massless ring: no rates among its unknowns, first order in time (IDA)")
         if film_unknowns:
@@ -123,6 +127,7 @@ class Unknowns:
                 continue
             support, seal = ring.support, ring.secondary_seal
             block[equations.SEAL_LINE :] = 0.0
+            block[equations.UNEVEN_K], block[equations.AXIS] = support.tilt_difference(), support.tilt_axis
             if seal:
                 block[equations.SEAL_LINE], block[equations.SEAL_RADIUS] = seal.line(), seal.radius
                 block[equations.SEAL_SMOOTH] = seal.law == "regularised"
@@ -200,10 +205,17 @@ class Unknowns:
     def _energy(self, model, length, tilt) -> float:
         """Energy of the motion to be expected: stiffness times the square of what is imposed (at most of the
         clearance), so that a gentle scene is audited as sharply as a violent one."""
+        stiffness, _ = model.film_matrices()
+        blocks = [self.ring_block[equations.RING * k : equations.RING * (k + 1)] for k in range(2)]
+        spring_z, spring_t = (sum(block[i] for block in blocks) for i in (equations.AXIAL_K, equations.TILT_K))
+        axial, angular = spring_z + abs(stiffness[0, 0]), spring_t + abs(stiffness[1, 1])
         # A changing load moves the equilibrium by an unknown part of the clearance.
         scene, amplitude = self.scene, 0.1 if self.loaded else 1e-3
         for row in harmonics_of_segment(scene.shaft, scene.housing, scene.rotor, scene.stator, model.start):
-            amplitude = max(amplitude, row[2] / (length if row[1] == AXIAL else tilt))
+            size = length if row[1] == AXIAL else tilt
+            if row[1] in (MOMENT, UNBALANCE):
+                size = max(angular * tilt, 1e-300) / (row[7] ** 2 if row[1] == UNBALANCE else 1.0)
+            amplitude = max(amplitude, abs(row[2]) / size)
         for motion in filter(None, (scene.housing.motion, scene.shaft.motion)):
             for column, scale in zip(motion.columns(), (length, tilt, tilt), strict=True):
                 amplitude = max(amplitude, max(map(abs, column)) / scale)
@@ -212,10 +224,7 @@ class Unknowns:
         for start in (scene.initial.stator, scene.initial.rotor):
             for given, scale in ((start.z, length), (start.tilt_x, tilt), (start.tilt_y, tilt)):
                 amplitude = max(amplitude, abs(given or 0.0) / scale)
-        stiffness, _ = model.film_matrices()
-        blocks = [self.ring_block[equations.RING * k : equations.RING * (k + 1)] for k in range(2)]
-        spring_z, spring_t = (sum(block[i] for block in blocks) for i in (equations.AXIAL_K, equations.TILT_K))
-        largest = max((spring_z + abs(stiffness[0, 0])) * length**2, (spring_t + abs(stiffness[1, 1])) * tilt**2)
+        largest = max(axial * length**2, angular * tilt**2)
         return max(largest * min(amplitude, 1.0) ** 2, 1e-30)
 
 

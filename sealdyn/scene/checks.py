@@ -229,6 +229,8 @@ def _ring(name: str, ring) -> None:
     if ring.polar_inertia > 0 and ring.transverse_inertia == 0:
         raise SceneError(f"{name}.transverse_inertia", "0 beside a polar_inertia", "an inertia > 0")
     support = ring.support
+    if support and ring.mass_centre and not (ring.mass > 0 and ring.transverse_inertia > 0):
+        raise SceneError(f"{name}.mass_centre", "a ring without mass or inertia", "mass and transverse_inertia > 0")
     if ring.secondary_seal:
         _secondary_seal(name, ring)
     if support is None:
@@ -239,6 +241,10 @@ def _ring(name: str, ring) -> None:
         raise SceneError(f"{key}.radius", "radius and tilt coefficients", "one or the other")
     if support.radius is None and support.tilt_stiffness is None:
         raise SceneError(f"{key}.radius", "nothing", "radius (of the ring of springs), or tilt_stiffness")
+    stiffness = support.tilt_stiffness
+    if isinstance(stiffness, tuple) and (len(stiffness) != 2 or min(stiffness) < 0.0):
+        expected = "one stiffness, or two >= 0, about the axis at tilt_axis and about the one across it"
+        raise SceneError(f"{key}.tilt_stiffness", f"{list(stiffness)}", expected)
     if support.radius is not None and support.radius <= 0:
         raise SceneError(f"{key}.radius", f"{support.radius:g} m", "a length > 0")
 
@@ -348,7 +354,7 @@ def turns_of(speed) -> float:
     return angle / (2 * math.pi)
 
 
-RIGID_LEAVES = ("mass", "transverse_inertia", "polar_inertia", "body", "unphysical_inertia")
+RIGID_LEAVES = ("mass", "transverse_inertia", "polar_inertia", "body", "mass_centre", "unphysical_inertia")
 
 
 def unused(scene, given: set[str]) -> list[str]:
@@ -359,10 +365,16 @@ def unused(scene, given: set[str]) -> list[str]:
             kept = ("body",) if scene.film.heat is not None and name in scene.film.heat.rings else ()
             leaves += [f"{name}.{key}" for key in RIGID_LEAVES if key not in kept]
             leaves += [f"initial.{name}.", f"{name}.secondary_seal."]
+        elif not ring.support.tilt_difference():
+            leaves.append(f"{name}.support.tilt_axis")
     if scene.rotor.support is None:
         leaves += ["rotor.misalignment", "rotor.misalignment_phase"]
     else:
         leaves += ["rotor.runout", "rotor.runout_phase"]
+    if not any(ring.support and ring.mass_centre for ring in (scene.rotor, scene.stator)):
+        leaves += ["housing.gravity", "housing.gravity_direction"]
+    elif not scene.housing.gravity:
+        leaves.append("housing.gravity_direction")
     grooved = bool(grooves_of(scene)[1])
     if scene.film.model != "reynolds" and not grooved:
         leaves.append("film.reynolds.")

@@ -242,8 +242,8 @@ class AngularVibration(Strict):
 
 @dataclass(frozen=True)
 class Housing(Strict):
-    """The `[[housing.axial]]` and `[[housing.angular]]` tables, those of random vibration and of sweeps, and
-    `[housing.motion]`."""
+    """The `[[housing.axial]]` and `[[housing.angular]]` tables, those of random vibration and of sweeps,
+    `[housing.motion]`, and gravity."""
 
     axial: list[AxialVibration] = field(default_factory=list)
     """Tones along the shaft axis."""
@@ -259,6 +259,10 @@ class Housing(Strict):
     """Sine sweeps of tilt."""
     motion: Motion | None = None
     """Motion of the housing by samples."""
+    gravity: Acceleration = 0.0
+    """Across the shaft, so that of a horizontal one; of rings with a `mass_centre`."""
+    gravity_direction: Angle = -0.5 * math.pi
+    """Towards which it pulls, from the x axis."""
 
     @property
     def axial_tones(self) -> list[AxialVibration]:

@@ -301,6 +301,9 @@ def tilt_is_imposed(scene) -> bool:
     rotor, stator = scene.rotor, scene.stator
     tilts = [rotor.misalignment if rotor.support else rotor.runout, stator.misalignment]
     tilts += [whirl.angle for whirl in scene.shaft.whirl]
+    for ring, speed in ((rotor, scene.shaft.speed), (stator, stator.speed)):
+        if ring.support and ring.mass_centre and ring.mass_centre.axial:
+            tilts += [scene.housing.gravity] + ([speed] if ring.mass_centre.eccentricity else [])
     vibrations = (*scene.housing.angular_tones, *scene.housing.angular_sweep)
     shaken = any(vibration.displacement or vibration.acceleration for vibration in vibrations)
     sampled = (m for m in (scene.housing.motion, scene.shaft.motion) if m)

@@ -10,12 +10,14 @@ from ..units import (
     BendingStiffness,
     Damping,
     Density,
+    Displacement,
     Force,
     Height,
     Inertia,
     Length,
     LineForce,
     Mass,
+    OneOrListed,
     Quantity,
     Radius,
     SpecificHeat,
@@ -288,17 +290,49 @@ class Support(Strict):
     """All dampers together, along the shaft axis."""
     radius: Radius | None = None
     """Radius of the circle of springs: tilt coefficient = axial coefficient * radius^2 / 2."""
-    tilt_stiffness: TiltStiffness | None = None
-    """About a diameter, in place of `radius`."""
+    tilt_stiffness: OneOrListed[TiltStiffness] | None = None
+    """About a diameter, in place of `radius`; two, about the axis at `tilt_axis` and about the one across it, of a
+    support that is not the same in all directions (two drive pins)."""
+    tilt_axis: Angle = 0.0
+    """Of the first of two tilt stiffnesses, from the x axis; turns with the ring's carrier."""
     tilt_damping: TiltDamping | None = None
     """About a diameter, beside `tilt_stiffness`; none without it."""
 
     def tilt(self) -> tuple[float, float]:
-        """Tilt stiffness (N m/rad) and tilt damping (N m s/rad)."""
+        """Tilt stiffness (N m/rad), the mean of two, and tilt damping (N m s/rad)."""
         if self.radius is not None:
             half = self.radius**2 / 2
             return self.axial_stiffness * half, self.axial_damping * half
-        return self.tilt_stiffness or 0.0, self.tilt_damping or 0.0
+        stiffness = self.tilt_stiffness or 0.0
+        if isinstance(stiffness, tuple):
+            stiffness = sum(stiffness) / len(stiffness)
+        return stiffness, self.tilt_damping or 0.0
+
+    def tilt_difference(self) -> float:
+        """Half the difference of two tilt stiffnesses (N m/rad): the moment is -(mean e + difference exp(2 i axis)
+        conj(e)) for a tilt e = e_x + i e_y off rest; 0 of a support that is the same in all directions."""
+        both = self.tilt_stiffness
+        return 0.5 * (both[0] - both[-1]) if isinstance(both, tuple) and both else 0.0
+
+
+@dataclass(frozen=True)
+class MassCentre(Strict):
+    """The `[rotor.mass_centre]` or `[stator.mass_centre]` table: where a floating ring's centre of mass lies from the
+    point about which it tilts, which its support holds on the shaft axis.
+
+    Turning, it pulls sideways on the arm `axial`, a moment m e a W^2 that turns with the ring (unbalance); with
+    `housing.gravity` across the shaft its weight does, a moment m a g that stands.
+    **Source** Lee & Green (1994), J. Vibration and Acoustics 116, who name both for a flexibly mounted rotor;
+    re-derived: moment of the force -m r'' and of the weight about the point.
+    **Valid** inertias about that point; eccentricities far below the radii, of which m e z'' is left out.
+    """
+
+    axial: Displacement
+    """Along the shaft, positive from rotor to stator."""
+    eccentricity: Displacement = 0.0
+    """From the shaft axis."""
+    phase: Angle = 0.0
+    """Of the eccentricity, at the start, from the x axis; turns with the ring's carrier."""
 
 
 @dataclass(frozen=True)
@@ -325,6 +359,8 @@ class Stator(Strict):
     """Moment of inertia about the shaft axis, at most twice the transverse one."""
     body: Body | None = None
     """The ring from its drawing, in place of mass and inertias."""
+    mass_centre: MassCentre | None = None
+    """Centre of mass off the point about which the ring tilts: unbalance and weight."""
     unphysical_inertia: bool = False
     """Allow a polar inertia beyond twice the transverse one, for comparison with published numbers."""
     misalignment: Varying[Tilt] = 0.0
@@ -358,6 +394,8 @@ class Rotor(Strict):
     """Moment of inertia about the shaft axis, at most twice the transverse one."""
     body: Body | None = None
     """The ring from its drawing, in place of mass and inertias."""
+    mass_centre: MassCentre | None = None
+    """Centre of mass off the point about which the ring tilts: unbalance and weight."""
     unphysical_inertia: bool = False
     """Allow a polar inertia beyond twice the transverse one, for comparison with published numbers."""
     misalignment: Varying[Tilt] = 0.0

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import fields, replace
 from typing import Any
 
-from ..numerics.piecewise_linear import PiecewiseLinear
+from ..numerics.piecewise_linear import PiecewiseLinear, points
 from .excitation import Housing, Shaft
 from .rings import INERTIAL, RING_NAMES, Rotor, Stator, with_inertia
 from .scene import Closing, Initial, RingStart, Scene, SceneError
@@ -45,8 +45,8 @@ LEFT_OUT = {
     "contact": ("contact", "stator.secondary_seal", "rotor.secondary_seal"),
     "secondary-seal": ("stator.secondary_seal", "rotor.secondary_seal"),
 }
-CARRIED = ("mass", "transverse_inertia", "polar_inertia", "body", "unphysical_inertia", "misalignment", "support",
-           "secondary_seal")  # fmt: skip
+CARRIED = ("mass", "transverse_inertia", "polar_inertia", "body", "mass_centre", "unphysical_inertia", "misalignment",
+           "support", "secondary_seal")  # fmt: skip
 # What a face keeps, whichever side its ring is on.
 FACE = ("waviness", "grooves")
 
@@ -107,6 +107,23 @@ def seals_that_stick(scene: Scene) -> list[str]:
     return [name for name in tables_of(scene, ["secondary-seal"]) if part(scene, name.split(".")[0]).support]
 
 
+def uneven_supports(scene: Scene) -> list[str]:
+    """Dotted names of the supports with two different tilt stiffnesses."""
+    return [f"{name}.support" for name in RING_NAMES if (s := getattr(scene, name).support) and s.tilt_difference()]
+
+
+def refuse_uneven(scene: Scene) -> None:
+    """Raises SceneError for a support with two different tilt stiffnesses, where a formula knows one."""
+    for key in uneven_supports(scene):
+        raise SceneError(f"{key}.tilt_stiffness", "two of them", "one: the formulas know no other support")
+
+
+def turning_supports(scene: Scene) -> list[str]:
+    """Those of them that turn."""
+    speeds = {"stator": scene.stator.speed, "rotor": scene.shaft.speed}
+    return [key for key in uneven_supports(scene) if any(points(speeds[key.partition(".")[0]]))]
+
+
 def without(scene: Scene, what) -> Scene:
     """The scene without `what`, names of LEFT_OUT: without "contact" that of the film alone."""
     return with_values(scene, dict.fromkeys(tables_of(scene, what)))
@@ -141,8 +158,8 @@ def unforced(scene: Scene, speed: float) -> Scene:
     return replace(
         scene,
         shaft=Shaft(speed=speed),
-        rotor=replace(scene.rotor, misalignment=0.0, runout=0.0, axial_runout=[]),
-        stator=replace(scene.stator, misalignment=0.0),
+        rotor=replace(scene.rotor, misalignment=0.0, runout=0.0, axial_runout=[], mass_centre=None),
+        stator=replace(scene.stator, misalignment=0.0, mass_centre=None),
         housing=Housing(),
     )
 

@@ -117,11 +117,12 @@ class Certificate:
 
 def error_estimator(run: RunState, method: str) -> GlobalErrorEstimate | None:
     """What follows the errors of a run by this method; None where its steps cannot show them: contact, friction,
-    changing conditions, a massless ring, other methods than Adams and BDF, a whirl that grows until it is not linear,
-    fast motion that nothing damps.
+    changing conditions, supports that turn uneven, a massless ring, other methods than Adams and BDF, a whirl that
+    grows until it is not linear, fast motion that nothing damps.
     """
     model, unknowns = run.model, run.model.unknowns
     follows = unknowns.constant and not (model.contact is not None or unknowns.seals or unknowns.has_residual_form)
+    follows = follows and not unknowns.turning_supports
     if not follows or method not in ("adams", "bdf"):
         return None
     asked = model.accuracy

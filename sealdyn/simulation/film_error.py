@@ -315,8 +315,8 @@ def steady_tilt(model: Model) -> tuple[complex, float, str]:
         return 0.0, 0.0, "a sweep has no linear steady state: aligned"
     linear = model.linear_scene()
     parts: dict[float, complex] = {}
-    for harmonic in segment.harmonics():
-        g = linear.relative(harmonic, linear.response(harmonic))
+    for harmonic, answer in linear.answers(segment.harmonics()):
+        g = linear.relative(harmonic, answer)
         # Re(g e^{iwt}) is a forward and a backward circle.
         w = harmonic.frequency
         parts[w] = parts.get(w, 0.0) + (g[1] + 1j * g[2]) / 2

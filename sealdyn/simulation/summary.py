@@ -19,6 +19,7 @@ from ..scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE, density_of, gas_of
 from ..scene.patterns import waves_of
 from ..scene.radial import RadialScene
 from ..scene.rings import RING_NAMES, ROTOR, SMALL_TILT, STATOR
+from ..scene.variants import uneven_supports
 from ..solvers.contract import Status
 from ..solvers.energy_audit import missing_energy
 from .plausibility import cautions, room_to_open, unit_warnings
@@ -390,7 +391,7 @@ def _answers(segment, at, linear):
     """Harmonics of the forcing with the linear response to each."""
     if at is segment.interval:
         return segment.steady_motion()[1]
-    return [(harmonic, linear.response(harmonic)) for harmonic in segment.harmonics()]
+    return linear.answers(segment.harmonics())
 
 
 def _contact_margin(model, at, linear, tilt, answers):
@@ -439,7 +440,8 @@ def _closed_form(segment, at, linear, tilt):
     scene, floats = segment.model.scene, segment.model.unknowns.floats
     arrangement = (floats[STATOR], floats[ROTOR])
     # The formulas know one stiffness and damping, whatever the frequency.
-    if arrangement == (True, True) or scene.stator.speed != 0.0 or segment.model.interface.stores:
+    other = uneven_supports(scene) or segment.model.interface.stores
+    if arrangement == (True, True) or scene.stator.speed != 0.0 or other:
         return found
     ring = scene.stator if arrangement[0] else scene.rotor
     stiffness, damping = ring.support.tilt()

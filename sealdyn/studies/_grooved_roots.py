@@ -21,7 +21,7 @@ from ..quantities import in_words
 from ..scene.contact import touch_height
 from ..scene.film import aligned_gaps, coned
 from ..scene.scene import Closing, Scene, SceneError
-from ..scene.variants import frozen_at_start
+from ..scene.variants import frozen_at_start, refuse_uneven
 from ..simulation.stability import FASTEST
 
 # Speeds between two of which one has more roots that grow.
@@ -66,6 +66,7 @@ def refuse_touching(scene, clearance: float) -> None:
 
 def rings_of(scene) -> tuple[Ring, ...]:
     """The rings that float, the stator first; () where one of them has no inertia."""
+    refuse_uneven(scene)
     found = []
     for name, spin in (("stator", scene.stator.speed), ("rotor", scene.shaft.speed)):
         ring = getattr(scene, name)

@@ -213,7 +213,7 @@ def linear_onset(scene, key: str, rough: float = 0.0) -> tuple[float, float]:
 def linear_film(model) -> tuple[float, float]:
     """Smallest film thickness (m) of the linear steady state, negative beyond touch, and its radius (m)."""
     linear = model.linear_scene()
-    answers = [(h, linear.response(h)) for h in model.segment().harmonics()]
+    answers = linear.answers(model.segment().harmonics())
     most, _, closing = steady_extremes(linear, answers, RunState(model, 1.0).period())
     coning = model.face[3] + model.coning_change()
     inner, outer = model.clearance, model.clearance + coning * (model.face[1] - model.face[0])

@@ -23,7 +23,7 @@ from ..quantities import in_words
 from ..scene.patterns import grooves_of
 from ..scene.rings import ROTOR, STATOR
 from ..scene.scene import Closing
-from ..scene.variants import frozen_at_start, with_values
+from ..scene.variants import frozen_at_start, uneven_supports, with_values
 from ..simulation.selection import choose_method
 from ..simulation.stability import FASTEST, critical_speed, held_speeds, natural_frequency, speeds_held
 from ..status import Status
@@ -126,6 +126,8 @@ def by_formula(model) -> tuple[float | None, str]:
         return None, "both rings float: no published formula"
     if scene.stator.speed != 0.0:
         return None, "the stator turns: no published formula"
+    if uneven_supports(scene):
+        return None, "a support with two tilt stiffnesses: no published formula"
     fmr = model.unknowns.floats[ROTOR]
     formula, ring = (fmr_critical_speed, scene.rotor) if fmr else (fms_critical_speed, scene.stator)
     if ring.transverse_inertia == 0.0:
@@ -266,6 +268,8 @@ def beyond(model, scene, threshold, settings, tools) -> dict | None:
         return None
     if model.unknowns.linear:
         return _not_followed("of a linear film nothing bounds the whirl and nothing tips it")
+    if uneven_supports(scene):
+        return _not_followed("no circular whirl stays one on a support with two tilt stiffnesses")
     if threshold is not None and threshold > FASTEST / scene.film.outer_radius:
         return _not_followed("not followed at such a speed")
     if threshold is None:

@@ -20,7 +20,7 @@ from ..quantities import in_words, number
 from ..scene.film import Coefficients
 from ..scene.rings import ROTOR, STATOR
 from ..scene.scene import Closing, SceneError
-from ..scene.variants import unforced, with_values
+from ..scene.variants import refuse_uneven, unforced, with_values
 from ..solvers.contract import Counts, SolverFailure, attainable, tolerance_for
 from ..solvers.fixed_step import REFERENCE_METHODS
 from . import Info
@@ -141,6 +141,7 @@ def free_ring(scene):
                  if ring.support and ring.transverse_inertia > 0), None)  # fmt: skip
     if name is None:
         raise SceneError("rotor.transverse_inertia", "no floating ring with inertia", "one that can precess")
+    refuse_uneven(scene)
     speed = scene.shaft.speed if isinstance(scene.shaft.speed, float | int) else max(scene.shaft.speed.value, key=abs)
     still = unforced(at_work(scene)[0], float(speed))
     ring, held = (still.rotor, still.stator) if name == "rotor" else (still.stator, still.rotor)

@@ -91,7 +91,7 @@ def run(scenario, settings, tools) -> Answer:
     tools.say(0.1)
     # Of a seal that follows closely the accuracy of a run is more than the whole relative tilt.
     waves = shooter.extremes(orbit.start, _samples(shooter, settings.samples), min(scenario.run.accuracy, SHARP))
-    answers = [(h, linear.response(h)) for h in shooter.model.segment().harmonics()]
+    answers = linear.answers(shooter.model.segment().harmonics())
     most, least, _ = steady_extremes(linear, answers, shooter.period)
     rows = []
     if critical and not shooter.model.unknowns.has_residual_form:

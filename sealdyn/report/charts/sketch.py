@@ -146,8 +146,9 @@ def _held(ax, run: Run, ring: str, end: float, way: int, width: float, balance: 
     if support:
         given = _has_radius(support)
         radius = MM * support["radius"] if given else middle
-        tilt = support.get("tilt_stiffness") or 0.0
-        words = f"support, r {radius:.4g}" if given else f"support,\n{written(tilt, 3)} N m/rad"
+        tilt = np.atleast_1d(support.get("tilt_stiffness") or 0.0)
+        stiff = ", ".join(written(k, 3) for k in tilt)
+        words = f"support, r {radius:.4g}" if given else f"support,\n{stiff} N m/rad"
         ax.plot(np.linspace(end, wall, len(COIL)), radius + 0.09 * width * COIL, color=BLACK, lw=1.2)
         ax.plot([wall, wall], [radius - 0.4 * width, radius + 0.4 * width], color=BLACK, lw=2.5)
         # On the side of the spring that the line of the balance radius leaves free.

@@ -276,7 +276,7 @@ def _settled(segment) -> tuple[float | None, float | None, float | None]:
     shift, linear = model.axial_shift(interval), model.linear_scene(interval)
     harmonics = [replace(h) for h in segment.harmonics()]
     period = _period(harmonics)
-    most, _, closing = steady_extremes(linear, [(h, linear.response(h)) for h in harmonics], period)
+    most, _, closing = steady_extremes(linear, linear.answers(harmonics), period)
     source, f = model.observed
     s = np.zeros(GAP_STATE_SIZE)
     s[DZ] = shift

@@ -58,7 +58,9 @@ class Steady:
         """Complex amplitude of the order at a speed (rad/s): relative tilt of exp(i order angle), or axial gap."""
         linear, total = self.model.linear_scene(speed=speed), 0j
         for h in self.orders.get(order, []):
-            turning = replace(h, frequency=order * speed)
+            # Unbalance pulls with the square of the speed.
+            moment = h.moment if h.moment is None or not order else speed**2 * h.moment
+            turning = replace(h, frequency=order * speed, moment=moment)
             z, x, y = linear.relative(turning, linear.response(turning))
             # What does not turn stands: its real part alone.
             own = 0.5 * (x + 1j * y) if order else x.real + 1j * y.real

@@ -22,6 +22,7 @@ from ...quantities import in_words
 from ...scene.film import coned
 from ...scene.rings import Support
 from ...scene.scene import Initial, RingStart, Scene, SceneError
+from ...scene.variants import refuse_uneven
 from ...simulation.selection import choose_method
 from ...solvers.contract import Recorder, Status
 from ...solvers.integrate import solve
@@ -90,6 +91,7 @@ def _film_under(load, q, support, seat, ring):
 
 def ring_of(scene) -> quasi_static.Ring:
     """The numbers of Ludwig & Allen of a scene.  **Raises** SceneError if it is not of their kind."""
+    refuse_uneven(scene)
     f, rotor = scene.film, scene.rotor
     pressures = [initially(f.inner_pressure), initially(f.outer_pressure)]
     seat, none = initially(scene.stator.misalignment), "nothing"

@@ -21,7 +21,7 @@ from ...scenario.reader import with_values
 from ...scene.contact import HALF_HEIGHT
 from ...scene.film import coning_varies
 from ...scene.scene import SceneError
-from ...scene.variants import frozen_at_start
+from ...scene.variants import frozen_at_start, refuse_uneven
 
 INERTIA_RATIO = "inertia_ratio"
 BLOCK = 100_000
@@ -50,6 +50,7 @@ class Grid:
 
     def __init__(self, scenario, axes: dict[str, np.ndarray]):
         self.scenario, self.scene = scenario, frozen_at_start(scenario.scene)
+        refuse_uneven(self.scene)
         self.axes = {key: np.asarray(values, dtype=float) for key, values in axes.items()}
         self.model = Model(self.scene)
         self.floating = [n for n, f in zip(("stator", "rotor"), self.model.unknowns.floats.values(), strict=True) if f]

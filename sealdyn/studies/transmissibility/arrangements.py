@@ -20,7 +20,7 @@ from ...scene.film import Coefficients, aligned_gaps, coned, coning_change
 from ...scene.gas import viscosity_of
 from ...scene.rings import RING_NAMES, ROTOR, STATOR
 from ...scene.scene import Initial, Scene
-from ...scene.variants import frozen_at_start, with_both_flexible_rings, with_single_flexible_ring
+from ...scene.variants import frozen_at_start, refuse_uneven, with_both_flexible_rings, with_single_flexible_ring
 from ...simulation.selection import choose_method
 from ...simulation.stability import critical_speed
 from ...solvers.contract import Recorder, Status
@@ -146,11 +146,14 @@ def seals_of(scene: Scene) -> dict[str, Arrangement]:
 def quiet(scene: Scene) -> Scene:
     """A scene at its start with nothing imposed, clearance kept, or the closing force of heated faces."""
     scene = frozen_at_start(scene)
+    refuse_uneven(scene)
     if scene.film.heat is None:
         # That of heated faces follows the speed, under the same closing force.
         scene = frozen_at_start(scene, clearance=Model(scene).clearance)
     scene = replace(scene, housing=Housing(), initial=Initial(), shaft=replace(scene.shaft, whirl=[], motion=None))
-    return replace(scene, rotor=replace(scene.rotor, axial_runout=[]))
+    rings = {"rotor": replace(scene.rotor, axial_runout=[], mass_centre=None),
+             "stator": replace(scene.stator, mass_centre=None)}  # fmt: skip
+    return replace(scene, **rings)
 
 
 def groups(seals: dict[str, Arrangement], speed: float) -> dict:
