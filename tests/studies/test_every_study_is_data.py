@@ -33,6 +33,7 @@ SMALL = {
     "runup": ("runup_past_threshold", {"film.model": "linear"},
               {"touch": False, "begin": 5600, "end": 6185, "rates": "60000, 80000"}),
     "sealing-number": ("ludwig_allen", {}, {"force_ratios": 2.0, "starts": "closed form", "turns": 2, "last": 1}),
+    "shaft-impedance": ("fmr_reference", {}, {"frequency": "10, 50 Hz"}),
     "stability": ("fmr_reference", {}, {"x": "shaft.speed=500:9000 rad/s:5", "y": "inertia_ratio=0.5:4:4",
                                         "confirm": 1}),
     "steady-state": ("fms_reference", {}, {"approach": []}),
