@@ -1,9 +1,12 @@
-"""Contact onset: the forcing at which the steady film first touches, by continuation of the periodic orbit."""
+"""Contact onset: the forcing at which the steady film first touches, by continuation of the periodic orbit; of a film
+that stores by ramps in time, and of faces that touch at rest the forcing that their contact allows."""
 
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Annotated, Literal
 
 import numpy as np
+from pydantic import Field
 from scipy.optimize import brentq
 
 from ..analysis.shooting import Follower, NoOrbit
@@ -12,6 +15,7 @@ from ..dynamics.interface import opening_parts
 from ..dynamics.model import Model
 from ..dynamics.modes import steady_extremes
 from ..dynamics.run_state import RunState
+from ..dynamics.warm_state import at_work
 from ..numerics.piecewise_linear import points
 from ..quantities import in_words
 from ..scenario.errors import ScenarioError
@@ -21,8 +25,12 @@ from ..scene import variants
 from ..scene.checks import unused
 from ..scene.contact import touch_height
 from ..scene.rings import SMALL_TILT
+from ..scene.scene import SceneError
+from ..simulation.simulate import simulate_in_memory
 from ..status import Status
 from . import Info
+from .wear.averages import ShortRunAverages
+from .wear.rosenbrock import NoAverage
 
 INFO = Info(
     timed=("fms_reference --set stator.misalignment=0", 2),
@@ -32,13 +40,22 @@ INFO = Info(
     units={
         **dict.fromkeys(("h_min", "axial", "clearance", "radius", "linear_radius", "touch"), "m"), "tilt": "rad",
         **dict.fromkeys(("contact_force", "closing_force"), "N"),
-        "cavitation_pressure": "Pa", "start": "SI", "beyond_tilt": "rad",
+        "cavitation_pressure": "Pa", "start": "SI", "beyond_tilt": "rad", "h_min_there": "m",
+        **dict.fromkeys(("allowed/share", "rise"), "1"),
         **dict.fromkeys(("margin", "times_own", "ratio", "axial_opening", "multiplier", "curve/path/curve"), "1"),
     },
-    along={"path": ("forcing",), "linear": ("forcing",), "curve": ("value",)},
+    along={"allowed/path": ("tried",), "path": ("forcing",), "linear": ("forcing",), "curve": ("value",)},
 )  # fmt: skip
 # Beyond this value of a key, SI, linear theory is not asked any more.
 LARGEST = 1e9
+# What may rise, by its name among the means of a short run, and in words.
+LIMITS = {"pressure": "contact_pressure", "load": "contact_force", "wear": "wear_rate", "friction": "friction_power"}
+AT_REST = {"pressure": "Pa", "load": "N", "wear": "m/s", "friction": "W"}
+WORDS = {"pressure": "contact pressure", "load": "load on the asperities", "wear": "wear", "friction": "friction"}
+# Largest value (SI) of a key that is no tilt, first share of the largest, steps up from there, a rise that counts as
+# any, how well means settle, how near the share the value found comes; a ramp's end, in linear onsets, and turns.
+LARGEST_RUNOUT, FIRST, STEP, CRUSHED, SETTLED, NEAR = 1e-3, 5e-6, 4.0, 10.0, 1e-3, 0.05
+RAMP_TO, RAMPS = 2.5, (12, 24)
 # Onsets further apart than this are seen on a logarithmic axis only.
 APART = 20.0
 
@@ -63,6 +80,10 @@ class Settings:
     most: float = 1000.0
     """An onset that linear theory sees beyond so many times the scenario's own value of the key is not followed;
     nor is one beyond any small tilt."""
+    share: Annotated[float, Field(ge=0)] = 0.1
+    """Of faces that touch at rest: by how much `limit` may rise until the key is what they allow; 0: not asked."""
+    limit: Literal["pressure", "load", "wear", "friction"] = "pressure"
+    """Largest contact pressure, mean load on the asperities, mean depth rate of wear, mean friction power."""
 
 
 def run(scenario, settings, tools) -> Answer:
@@ -72,7 +93,8 @@ def run(scenario, settings, tools) -> Answer:
     if unused(scenario.scene, {key}):
         found, expected = f"{key}, which this seal does not use", " or ".join(acting(scenario.scene))
         raise ScenarioError(scenario.name, "study.contact_onset.key", found, expected)
-    base = {"key": key, "margin": settings.margin, "tolerance": settings.tolerance, "most": settings.most}
+    base = {"key": key, "margin": settings.margin, "tolerance": settings.tolerance, "most": settings.most,
+            "share": settings.share, "limit": settings.limit}  # fmt: skip
     # Plain and floored are separate points: the floored film may fail, or be interrupted, where the plain one holds.
     floors = [False, True] if settings.floor else [False]
     sets = [{}, *({settings.over: value} for value in settings.values if settings.over)]
@@ -86,7 +108,8 @@ def run(scenario, settings, tools) -> Answer:
     numbers = {"key": key, "formula": None, "nonlinear": None, "radius": None, "margin": settings.margin,
               **plain[0], "floored": floored[0], "over": settings.over, "curve": curve}  # fmt: skip
     unit = si_unit(scenario.scene, key)
-    numbers["units"] = dict.fromkeys(("forcing", "formula", "nonlinear"), unit)
+    numbers["units"] = dict.fromkeys(("forcing", "formula", "nonlinear", "not_before", "ramps", "allowed/value"), unit)
+    numbers["units"]["allowed/at_rest"] = AT_REST[settings.limit]
     numbers["units"]["value"] = si_unit(scenario.scene, settings.over) if curve else "SI"
     if "failed" in numbers:
         numbers["status"] = Status.OK if numbers.get("beyond_tilt") else Status.FAILED
@@ -115,7 +138,8 @@ def onset(scenario, point: dict) -> dict:
     key, rough = point["key"], touch_height(scenario.scene)
     aligned = touching_when_aligned(scenario.scene, rough)
     if aligned:
-        return {"key": key, "formula": 0.0, "nonlinear": 0.0, "margin": point["margin"], **aligned}
+        allows = {"allowed": allowed(scenario, point)} if point["share"] > 0.0 else {}
+        return {"key": key, "formula": 0.0, "nonlinear": 0.0, "margin": point["margin"], **aligned, **allows}
 
     def scene(value):
         # Until asperities meet the film is alone.
@@ -137,6 +161,8 @@ def onset(scenario, point: dict) -> dict:
         return {**result, **beyond}
     if (result["times_own"] or 0.0) > point["most"]:
         return {**result, "failed": f"beyond {point['most']:g} times the scenario's own nothing is followed"}
+    if Model(scene(0.0), 1e-6).interface.stores:
+        return {**result, **ramped(scenario, key, formula, point["margin"], rough / result["clearance"])}
     follower = Follower(scene, point["margin"], min(scenario.run.accuracy, 1e-7), touch=rough)
     try:
         value = follower.follow(formula, point["tolerance"], limit)
@@ -166,6 +192,78 @@ def onset(scenario, point: dict) -> dict:
         result["ratio"] = result["nonlinear"] / formula
         result["cavitation_pressure"] = lowest
     return result
+
+
+def ramped(scenario, key: str, formula: float, margin: float, rough: float) -> dict:
+    """Onset of a film that stores, whose orbits have no period map of the rings alone: the key grows from nothing to
+    beyond its linear onset `formula` in time, twice as slowly the second time; touch is the larger of `margin` and the
+    height `rough` where asperities meet, of the clearance.  `ramps`: both onsets, the slower one counts; without a
+    touch `not_before`, the value reached."""
+    end, values = RAMP_TO * formula, []
+    if si_unit(scenario.scene, key) == "rad":
+        end = min(end, SMALL_TILT)
+    plain = {"contact": None} if scenario.scene.contact else {}
+    for turns in RAMPS:
+        period = 2.0 * np.pi / abs(scenario.scene.shaft.speed)
+        growing = {"time": [0.0, turns * period], "value": [0.0, end]}
+        values_set = {key: growing, "film.floor": max(margin, rough), "run.turns": turns, "run.start": "steady"}
+        try:
+            found = simulate_in_memory(with_values(scenario, {**plain, **values_set}))
+        except (ScenarioError, SceneError) as reason:
+            return {"failed": f"a film that stores is run in time with a ramp of the key: {reason}"}
+        if found["status"] == Status.OK:
+            return {"not_before": end, "h_min_there": found["h_min"]["value"]}
+        if found["status"] != Status.COLLAPSED:
+            return {"failed": f"a ramp in time ends: {found['message']}"}
+        values.append(end * found["h_min"]["time"] / (turns * period))
+    return {"nonlinear": values[-1], "ratio": values[-1] / formula, "ramps": values}
+
+
+def allowed(scenario, point: dict) -> dict:
+    """Of faces that touch at rest: the `value` of the key at which the limit is up by the share, `at_rest` (SI) the
+    limit without it, `path` what was tried; `value` None where it stays below for any small tilt, or `failed`."""
+    key, name = point["key"], LIMITS[point["limit"]]
+    path, ended = {"forcing": [], "rise": []}, []
+    told = {"limit": point["limit"], "share": point["share"], "value": None, "path": path}
+    contact = scenario.scene.contact
+    if point["limit"] == "wear" and not (contact.stator_wear_coefficient or contact.rotor_wear_coefficient):
+        return {**told, "failed": "no wear coefficient in [contact]"}
+
+    def seen(value):
+        scene = at_work(with_values(scenario, {key: value}).scene)[0]
+        film = scene.film
+        radii = film.profile.radius if film.profile else (film.inner_radius, film.outer_radius)
+        means = ShortRunAverages(scene, radii, min(scenario.run.accuracy, 1e-5), SETTLED)
+        return means(np.zeros(len(radii))).row[name]
+
+    def excess(value):
+        try:
+            rise = seen(value) / told["at_rest"] - 1.0
+        except NoAverage as stop:
+            # Crushed asperities, or a run that ends: looked for below.
+            ended.append(str(stop))
+            rise = CRUSHED
+        path["forcing"].append(float(value))
+        path["rise"].append(float(rise))
+        return rise - point["share"]
+
+    try:
+        told["at_rest"] = float(seen(0.0))
+        if told["at_rest"] <= 0.0:
+            return {**told, "failed": f"nothing touches without any {key}"}
+        most = SMALL_TILT if si_unit(scenario.scene, key) == "rad" else LARGEST_RUNOUT
+        low, high = 0.0, FIRST * most
+        while excess(high) < 0.0:
+            if high >= most:
+                return told
+            low, high = high, min(STEP * high, most)
+        found = float(brentq(excess, low, high, rtol=SETTLED))
+        if abs(excess(found)) > NEAR * point["share"]:
+            return {**told, "failed": f"runs beyond {found:.4g} end: {ended[-1]}" if ended else "no such rise"}
+        told["value"] = found
+    except (NoAverage, SceneError) as reason:
+        told["failed"] = str(reason)
+    return told
 
 
 def touching_when_aligned(scene, rough: float) -> dict | None:
@@ -246,11 +344,25 @@ def _found(numbers, unit: str) -> str:
     key, formula = numbers["key"], numbers["formula"]
     if "failed" not in numbers:
         if numbers["nonlinear"] == 0.0:
-            return f"The asperities touch without any {key}."
+            return f"The asperities touch without any {key}{_allows(numbers, unit)}."
+        if numbers.get("not_before"):
+            return (f"Linear theory touches at {key} = {in_words(unit, formula)}; in time the faces do not touch up to "
+                    f"{in_words(unit, numbers['not_before'])}.")  # fmt: skip
         return f"The faces first touch at {key} = {in_words(unit, numbers['nonlinear'], digits=6)}."
     if formula is None:
         return numbers["failed"]
     return f"Linear theory touches at {key} = {in_words(unit, formula)}; undecided beyond: {numbers['failed']}."
+
+
+def _allows(numbers, unit: str) -> str:
+    """What faces that touch at rest allow."""
+    found = numbers.get("allowed")
+    if not found or "failed" in found:
+        return f"; what they allow is not known: {found['failed']}" if found else ""
+    rise = f"{in_words('share', found['share'])} more {WORDS[found['limit']]}"
+    if found["value"] is None:
+        return f"; no small tilt brings {rise}"
+    return f"; {rise} come at {in_words(unit, found['value'])}"
 
 
 def _tables(numbers) -> list[Table]:
@@ -263,6 +375,11 @@ def _tables(numbers) -> list[Table]:
         ("force", "contact at rest", "contact_force"), ("force", "closing force", "closing_force"),
     )  # fmt: skip
     columns, row = [name[:2] for name in names], [numbers.get(key) for *_, key in names]
+    if numbers.get("allowed"):
+        columns += [(unit, "allowed"), ("share", "more"), ("1", "of")]
+        row += [numbers["allowed"][key] for key in ("value", "share", "limit")]
+    if numbers.get("not_before"):
+        columns, row = [*columns, (unit, "not before")], [*row, numbers["not_before"]]
     if floored:
         columns += [(unit, "with a floor"), ("pressure", "floored at"), ("1", "floored failed")]
         row += [floored.get(key) for key in ("nonlinear", "cavitation_pressure", "failed")]
