@@ -294,17 +294,22 @@ def _balance(seal: Seal, limit) -> Finding:
     return limit_finding(sentence, pressure, most=most, balance=balance)
 
 
+KEYS_OF_HANG_UP = ("ring", "available", "needed", "friction", "inertia", "tilting", "holds", "sure")
+
+
 def _hang_up(seal: Seal, limit) -> Finding:
-    """Pass if the spring beats what the ring needs to follow the rotor."""
+    """Pass if the spring beats what the ring needs to follow the rotor; a note where one side of the face opens."""
     scene = seal.scene
     if scene.rotor.support or not scene.stator.support:
         return other_seals("the rotor floats, which carries its axial runout itself")
-    if not scene.rotor.axial_runout:
-        return missing_keys("rotor.axial_runout")
+    if not (scene.rotor.axial_runout or any(points(scene.rotor.runout))):
+        return missing_keys("rotor.axial_runout", "rotor.runout")
     if scene.closing.spring_force is None:
         return missing_keys("closing.spring_force")
     balance = followability(seal.model)
-    numbers = {key: balance[key] for key in ("ring", "available", "needed", "friction", "inertia", "holds")}
+    numbers = {key: balance[key] for key in KEYS_OF_HANG_UP}
+    if balance["needed"] < balance["available"] <= balance["sure"]:
+        return note(balance["sentence"], balance["available"], **numbers)
     # To be equal is not enough.
     least = math.nextafter(balance["needed"], math.inf)
     return limit_finding(balance["sentence"], balance["available"], least=least, **numbers)

@@ -267,40 +267,77 @@ def _distance(frequency: float, band: tuple[float, float]) -> float:
 
 
 def followability(model: Model) -> dict | None:
-    """Whether the spring keeps a flexible stator on a rotor that runs out axially (hang-up).
+    """Whether the spring keeps a flexible stator on a rotor that runs out, axially or in its face (hang-up).
 
-    The ring follows z_r = sum of a_n cos(n phi + e_n) if what closes it beats the friction of its secondary seal, its
-    inertia and the change of its support springs at every angle: F > -m z_r'' - k z_r + F_f where it moves away.
+    The ring follows z_r = sum of a_n cos(n phi + e_n) and the tilt g_r exp(i phi) of the rotor's face if what closes it
+    beats the friction of its secondary seal, its inertia and the change of its support springs at every angle:
+    F > -m z_r'' - k z_r + F_f where it moves away, and what presses the faces then is left to tilt it, at most on the
+    arm of the outer radius: |-I w^2 g + K (g - g_own) + M_f| / r_o more.  F_f and M_f are those of a ring that slides
+    and tilts at once (dynamics/secondary_seal.py), and F no less than the friction alone.
+    On the arm of the kern of the face, (r_i^2 + r_o^2)/(4 r_o), in place of r_o all of the face stays pressed: between
+    the two loads one side of it opens, and only a run says how far.
     **Source** Hayden & Keller (1974): the spring load must exceed secondary-seal friction plus the inertia of following
-    the runout.  **Valid** balanced or absent pressures, no film force, constant speed, only the stator floats.
-    Returns `ring`, `available` (spring, N), `needed` (N), `friction`, `inertia` (N), `holds`, `sentence`; None where
-    there is nothing to follow, as of a rotor that carries the runout itself.
+    the runout; the tilt derived here, from the resultant of a face that only pushes.
+    **Valid** balanced or absent pressures, no film force, constant speed, no gyroscopic moment (a stator that does not
+    turn), only the stator floats.
+    Returns `ring`, `available` (spring, N), `needed` (N), `friction`, `inertia`, `tilting` (N, what the moment asks
+    for, at most), `holds`, `sure` (N, from which on all of the face is pressed), `sentence`; None where there is
+    nothing to follow, as of a rotor that carries the runout itself.
     """
-    scene = model.scene
+    scene, rotor = model.scene, model.scene.rotor
     floating = [k for k, floats in model.unknowns.floats.items() if floats]
-    if floating != [0] or not scene.rotor.axial_runout or scene.closing.spring_force is None:
+    tilt = constant_and_slope(rotor.runout, model.start)[0]
+    if floating != [0] or not (rotor.axial_runout or tilt) or scene.closing.spring_force is None:
         return None
     ring = scene.stator
     spring = constant_and_slope(scene.closing.spring_force, model.start)[0]
     speed = constant_and_slope(scene.shaft.speed, model.start)[0]
     friction = ring.secondary_seal.breakaway()[0] if ring.secondary_seal else 0.0
-    whole = all(float(r.order).is_integer() for r in scene.rotor.axial_runout)
+    whole = all(float(r.order).is_integer() for r in rotor.axial_runout)
     phi = np.linspace(0, 2 * math.pi * (1 if whole else TURNS), POINTS * (1 if whole else TURNS))
     z, rate, acceleration = (np.zeros_like(phi) for _ in range(3))
-    for runout in scene.rotor.axial_runout:
+    for runout in rotor.axial_runout:
         w = runout.order * speed
         angle = runout.order * phi + runout.phase
         z += runout.amplitude * np.cos(angle)
         rate -= runout.amplitude * w * np.sin(angle)
         acceleration -= runout.amplitude * w * w * np.cos(angle)
+    share, moment = np.where(rate <= 0, 1.0, -1.0), np.zeros_like(phi)
+    if tilt:
+        turned = tilt * np.exp(1j * (phi + rotor.runout_phase))
+        moment = _tilting(ring, speed, turned, constant_and_slope(ring.misalignment, model.start)[0])
+        if ring.secondary_seal and speed:
+            seal = ring.secondary_seal
+            along = np.clip(-rate / (seal.radius * abs(speed) * tilt), -1.0, 1.0)
+            share = 2.0 / math.pi * np.arcsin(along)
+            moment = (
+                moment + seal.breakaway()[1] * np.sqrt(1.0 - along**2) * 1j * math.copysign(1.0, speed) * turned / tilt
+            )
+        moment = np.abs(moment)
+    inner, outer = scene.film.inner_radius, scene.film.outer_radius
+    kern = (inner**2 + outer**2) / (4.0 * outer)
     pull = -ring.mass * acceleration - ring.support.axial_stiffness * z
-    needed = float(np.max(np.where(rate <= 0, pull + friction, pull - friction)))
-    inertia = float(np.max(ring.mass * np.abs(acceleration)))
-    holds = spring > needed
+    # A ring that has parted, and sticks, takes all of the friction to close again.
+    needed, sure = (
+        max(float(np.max(pull + share * friction + moment / arm)), friction if tilt else -math.inf)
+        for arm in (outer, kern)
+    )
+    inertia, tilting = float(np.max(ring.mass * np.abs(acceleration))), float(np.max(moment)) / outer
+    holds, together = spring > needed, spring > sure
     sentence = (
         f"spring {spring:.4g} N {'exceeds' if holds else 'does not exceed'} the {needed:.4g} N that the "
-        f"{RING_NAMES[0]} needs to follow the axial runout (secondary-seal friction {friction:.4g} N, inertia "
-        f"{inertia:.4g} N, support springs): " + ("the faces stay together" if holds else "the faces part (hang-up)")
+        f"{RING_NAMES[0]} needs to follow the runout (secondary-seal friction {friction:.4g} N, inertia "
+        f"{inertia:.4g} N, {f'tilting up to {tilting:.4g} N, ' if tilt else ''}support springs): "
+        + ("the faces stay together" if together else "" if holds else "the faces part (hang-up)")
+        + (f"from {sure:.4g} N on all of the face is pressed, below one side of it opens" if holds > together else "")
     )
     return {"ring": RING_NAMES[0], "available": spring, "needed": needed, "friction": friction, "inertia": inertia,
-            "holds": holds, "sentence": sentence}  # fmt: skip
+            "tilting": tilting, "holds": holds, "sure": sure, "sentence": sentence}  # fmt: skip
+
+
+def _tilting(ring, speed: float, turned, own: float):
+    """Moments (N m, complex) that carry a ring along with tilts `turned` (m,) (rad, complex), without friction."""
+    stretched = turned - own * np.exp(1j * ring.misalignment_direction)
+    uneven = ring.support.tilt_difference() * np.exp(2j * ring.support.tilt_axis)
+    springs = ring.support.tilt()[0] * stretched + uneven * stretched.conj()
+    return springs - ring.transverse_inertia * speed**2 * turned

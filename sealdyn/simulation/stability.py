@@ -7,6 +7,7 @@ import numpy as np
 from ..dynamics import modes, stability_thresholds
 from ..dynamics.intervals import constant_and_slope
 from ..dynamics.linearisation import moves_with_speed, whirl_over_speed
+from ..dynamics.model import Model
 from ..dynamics.stability_thresholds import neutral_speeds
 from ..scene.patterns import grooves_of, waves_of
 from ..scene.rings import ROTOR, STATOR
@@ -115,6 +116,22 @@ def thresholds(model, interval=None) -> list[float]:
 def critical_speed(model, interval=None) -> float | None:
     """Lowest of the `thresholds` (rad/s); None if there is none."""
     return min(thresholds(model, interval), default=None)
+
+
+def critical_speed_undamped(model) -> tuple[bool, float | None]:
+    """Whether a floating rotor's support has tilt damping, which turns with it, and the critical speed (rad/s) without;
+    None if there is none, and where the rotor has no such damping, or where each speed is a search of its own.
+
+    **Source** Green (1989), eq. for the whirl ratio (D_s + D_f/2)/(D_s + D_f) of a flexibly mounted rotor: what its
+    damper adds there lowers the critical speed; re-derived."""
+    support = model.scene.rotor.support
+    known = model.interface.unknowns is None and not moves_with_speed(model.given)
+    if support is None or not support.tilt()[1] or not known:
+        return False, None
+    stiffness = support.tilt_stiffness if support.radius is None else support.tilt()[0]
+    bare = replace(support, radius=None, tilt_stiffness=stiffness, tilt_damping=0.0)
+    scene = replace(model.given, rotor=replace(model.given.rotor, support=bare))
+    return True, critical_speed(Model(scene, model.accuracy, None, model.film))
 
 
 def resonance_speeds(model, interval=None) -> list[float]:

@@ -25,7 +25,14 @@ from ..scene.rings import ROTOR, STATOR
 from ..scene.scene import Closing
 from ..scene.variants import frozen_at_start, uneven_supports, with_values
 from ..simulation.selection import choose_method
-from ..simulation.stability import FASTEST, critical_speed, held_speeds, natural_frequency, speeds_held
+from ..simulation.stability import (
+    FASTEST,
+    critical_speed,
+    critical_speed_undamped,
+    held_speeds,
+    natural_frequency,
+    speeds_held,
+)
 from ..status import Status
 from . import Info
 
@@ -35,7 +42,8 @@ INFO = Info(
     grooved=True,
     refuses=("secondary-seal",),
     units={
-        **dict.fromkeys(("speed", "frequency", "bracket"), "rad/s"), **dict.fromkeys(("opening", "h_min"), "m"),
+        **dict.fromkeys(("speed", "frequency", "bracket", "undamped_rotor"), "rad/s"),
+        **dict.fromkeys(("opening", "h_min"), "m"),
         **dict.fromkeys(("eigenvalue", "growth/time_domain", "growth/uncertainty", "growth_rate", "rate"), "1/s"),
         **dict.fromkeys(("amplitude", "disturbance", "whirl", "tipping/branch", "directions/branch", "from", "apart"),
                         "rad"),
@@ -92,6 +100,7 @@ def run(scenario, settings, tools) -> Answer:
     method = "ida" if model.unknowns.has_residual_form else settings.method
     how = {"method": method, "accuracy": settings.accuracy, "turns": settings.turns}
     answer = {"formula": formula, "formula_reason": why, "eigenvalue": eigenvalue, "unit": "rad/s"}
+    answer["rotor_damper"], answer["undamped_rotor"] = critical_speed_undamped(model)
     answer["speeds_held"], answer["own_speed"] = speeds_held(model), abs(scene.shaft.speed)
     answer |= in_time(scene, model, eigenvalue, how, tools, pace)
     answer["nonlinear"] = beyond(model, scene, eigenvalue, settings, tools)
@@ -345,6 +354,10 @@ def _notes(numbers) -> list[str]:
         found.append(f"In time: {numbers['time_domain']['reason']}.")
     if numbers["formula_reason"]:
         found.append(f"No formula: {numbers['formula_reason']}.")
+    bare, eigenvalue = numbers["undamped_rotor"], numbers["eigenvalue"]
+    if numbers["rotor_damper"] and eigenvalue and (bare is None or bare > eigenvalue):
+        words = f"it is {in_words('speed', bare)} without it" if bare else "without it there is none"
+        found.append(f"The rotor's damper turns with it and costs critical speed: {words}.")
     growth = numbers["growth"]
     if apart := sum(disagreements(growth)):
         found.append(f"Eigenvalues and runs in time disagree at {apart} of {len(growth['speed'])} speeds.")

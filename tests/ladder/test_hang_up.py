@@ -28,6 +28,40 @@ def test_the_rule_is_spring_against_friction_and_inertia():
     assert rule("closing.spring_force=31.2 N")["holds"]
 
 
+TILT = ("rotor.axial_runout=[]", "rotor.runout=300 urad", "shaft.speed=2000 rad/s", "initial.stator.z=14 um")
+
+
+def test_a_face_that_runs_out_asks_for_friction_and_inertia_of_the_tilt():
+    """Friction of a ring that tilts alone, 2 R/pi of its breakaway force, a quarter turn ahead of inertia less springs;
+    at most on the arm of the outer radius."""
+    inertia, speed, tilt, radius, face = 8e-4, 2000.0, 300e-6, 0.045, (0.032, 0.040)
+    friction = 2.0 * radius * FRICTION / np.pi
+    springs = (0.5 * STIFFNESS * 0.04**2 - inertia * speed**2) * tilt
+    moment, found = np.hypot(friction, springs), rule(*TILT)
+    assert found["needed"] == pytest.approx(moment / face[1], rel=1e-9)
+    assert found["sure"] == pytest.approx(moment * 4 * face[1] / (face[0] ** 2 + face[1] ** 2), rel=1e-9)
+    assert not found["holds"] and rule(*TILT, "closing.spring_force=26 N")["holds"]
+    # Slow, the ring that has parted asks for more than one that tilts.
+    assert rule(*TILT, "shaft.speed=1000 rad/s", "rotor.runout=200 urad")["needed"] == pytest.approx(FRICTION)
+
+
+def test_both_runouts_ask_for_less_than_their_sum():
+    """The circle integral of friction, here by its midpoint rule, of a ring that slides and tilts at once."""
+    waves = "[{order=1,amplitude=20e-6},{order=2,amplitude=4e-6,phase=0.9}]"
+    changes = (f"rotor.axial_runout={waves}", "rotor.runout=200 urad", "initial.stator.z=40 um")
+    phi = np.linspace(0.0, 2 * np.pi, 721)
+    theta = (np.arange(4000) + 0.5) * 2 * np.pi / 4000
+    turned, radius, w = 200e-6 * np.exp(1j * phi), 0.045, SPEED
+    rate, q = -w * (AMPLITUDE * np.sin(phi) + 8e-6 * np.sin(2 * phi + 0.9)), 1j * w * turned
+    sliding = np.sign(rate[:, None] + radius * (np.outer(q.real, np.sin(theta)) - np.outer(q.imag, np.cos(theta))))
+    force = -FRICTION * np.mean(sliding, axis=1)
+    moment = FRICTION * radius * np.mean(sliding * (np.sin(theta) - 1j * np.cos(theta)), axis=1)
+    moment = moment + (0.5 * STIFFNESS * 0.04**2 - 8e-4 * w**2) * turned
+    pull = (MASS * w**2 - STIFFNESS) * AMPLITUDE * np.cos(phi)
+    pull = pull + (4 * MASS * w**2 - STIFFNESS) * 4e-6 * np.cos(2 * phi + 0.9)
+    assert rule(*changes)["needed"] == pytest.approx(np.max(pull + force + np.abs(moment) / 0.04), rel=1e-3)
+
+
 def test_nothing_to_follow_no_rule():
     assert followability(prepare_run(read_scenario(SCENARIO.parent / "fms_reference.toml"))[0].model) is None
 

@@ -43,6 +43,13 @@ def test_three_roads_to_the_printed_threshold(scenario, overrides, printed, tmp_
     assert abs(roads[2] - roads[1]) < 3 * answer["time_domain"]["uncertainty"] < 0.01
     assert answer["time_domain"]["numerical_damping"] < 0.1 * min(map(abs, answer["growth"]["time_domain"]))
     assert answer["nonlinear"]["tipping"] == []
+    # A damper that turns with its ring drives the whirl: without it w^2 = (K/I)/(nu (nu - 1/c)) with nu = 1/2, c = 3.
+    fmr, stiffness = scenario == "fmr_reference", 0.5 * 5e5 * 0.04**2 + K_F
+    without = math.sqrt(stiffness / INERTIA / (0.5 * (0.5 - 1 / 3))) if fmr else None
+    assert answer["rotor_damper"] == fmr and answer["undamped_rotor"] == (
+        pytest.approx(without, rel=1e-4) if fmr else None
+    )
+    assert not fmr or answer["undamped_rotor"] > answer["eigenvalue"]
 
 
 @pytest.mark.parametrize("share", [0.998, 1.002])

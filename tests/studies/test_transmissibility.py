@@ -50,6 +50,20 @@ def test_greens_table_1_follows_from_either_scenario(file, ring, c):
             assert row["time_domain"][seal] == pytest.approx(row["formula"][seal], rel=1e-4)
 
 
+def test_the_absolute_tilt_is_greens_equation_7():
+    """Of the rotor as printed; of the stator from its own equation, (K - I w^2 + i w (D_s + D_f/2)) g = (K_f + i w
+    D_f/2) g_r.  What is absolute and what is relative add up to the forcing."""
+    found = answer(points=7, speed_to=3000.0, time_points=0)
+    k, d = (m[1, 1] for m in Model(read_scenario(SCENARIOS / "fmr_reference.toml", ["film.model=linear"]).scene)
+            .film_matrices())  # fmt: skip
+    w, k_s, d_s, inertia = np.array(found["speed"]), 400.0, 0.24, 8e-4
+    rotor = (k - 0.5j * w * d) / (k + k_s - 1j * w * (d_s + 0.5 * d))
+    stator = (k + 0.5j * w * d) / (k + k_s - inertia * w**2 + 1j * w * (d_s + 0.5 * d))
+    for name, tilt in (("fmr", rotor), ("fms", stator)):
+        assert found[name]["absolute"] == pytest.approx(np.abs(tilt), rel=1e-6)
+    assert np.abs(1.0 - rotor) == pytest.approx(found["fmr"]["static"], rel=1e-6)
+
+
 @pytest.mark.core
 def test_crossovers_solve_greens_formulas():
     """K_s 400 N m, D_s 0.24 N m s, K_f 5791 N m, D_f 4.082 N m s of the paper's Fig. 8, c = 1/2."""

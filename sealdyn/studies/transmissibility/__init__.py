@@ -48,7 +48,7 @@ INFO = Info(
     refuses=("secondary-seal",),
     units={
         "speed": "rad/s", "turns": "1", "groups/seal_parameter": "Pa", "from": "rad/s", "to": "rad/s", "pairs": "1",
-        **dict.fromkeys(PHASES, "deg"), **dict.fromkeys(QUANTITIES, "1"),
+        **dict.fromkeys(PHASES, "deg"), **dict.fromkeys((*QUANTITIES, "absolute"), "1"),
         **{f"stability_ends/{seal}": "rad/s" for seal in SEALS},
         **{f"table{road}/{seal}": "the row's unit"
            for seal in SEALS for road in ("", "/formula", "/linear_algebra", "/time_domain")},
@@ -128,6 +128,8 @@ def run(scenario, settings, tools) -> Answer:
             numbers[name] = curves(speeds, seal.formula_tilts(speeds))
             numbers[name] |= dict(zip(QUANTITIES, np.array(seal.formula(speeds)).tolist(), strict=True))
         numbers[name]["linear_algebra"] = algebra
+        if name != "fmsr":
+            numbers[name]["absolute"] = [seal.absolute(w) for w in speeds]
         numbers[name]["stable"] = [seal.growth(w) < 0 for w in speeds]
     numbers["formula_holds"] = by_formula
     numbers["roads_apart"], numbers["phases_apart"] = _apart(numbers)
@@ -377,6 +379,9 @@ def _tables(seals, numbers) -> tuple[list[Table], list[str]]:
     found.append(Table("best", columns, rows))
     rows = [[name.upper(), end] for name in SEALS for end in numbers["stability_ends"][name]]
     found.append(Table("stability", [("1", "seal"), ("speed", "steady state ends or begins")], rows))
+    rows = [[name.upper(), key, seals[name].absolute(speed)] for name in SEALS[:2] for key in PARTNERS[name]]
+    columns = [("1", "floating ring of"), ("1", "per unit"), ("transmissibility", "absolute tilt")]
+    found.append(Table("absolute", columns, rows))
     stiffness, damping = (float(v) for v in seals["fmr"].film_numbers(speed))
     columns = [("1", "film"), ("tilt_stiffness", "tilt stiffness"), ("tilt_damping", "tilt damping"),
                ("1", "formula and algebra apart"), ("phase", "phases apart"), ("1", "points in time")]  # fmt: skip

@@ -92,6 +92,14 @@ class Arrangement:
         static, dynamic = map(abs, self.relative_tilts(speed))
         return static, dynamic, static + dynamic
 
+    def absolute(self, speed: float) -> float | None:
+        """Tilt of the ring that floats per unit tilt of its rigid partner (rad/rad), 1 of one that follows it exactly,
+        by harmonic balance at a speed (rad/s); None of two floating rings.
+
+        **Source** Green (1989), eq. 7, for the rotor; the relative tilt is the stator's less the rotor's."""
+        static, dynamic = self.relative_tilts(speed)
+        return {"fmr": abs(1.0 - static), "fms": abs(1.0 + dynamic)}.get(self.name)
+
     def growth(self, speed: float) -> float:
         """Growth rate (1/s) of the least damped tilt mode; 0 within its uncertainty."""
         return modes.growth([mode for mode in self.linear(speed).modes() if mode.kind == "tilt"])
