@@ -117,6 +117,7 @@ def over_grooves(scene, tools) -> dict:
     return {
         "formula": None, "formula_reason": "grooves: no published formula", "unit": "rad/s",
         "eigenvalue": min(found, default=None), "thresholds": found, "speeds_held": None,
+        "rotor_damper": None, "undamped_rotor": None,
         "own_speed": abs(initially(scene.shaft.speed)),
         "time_domain": {"value": None, "uncertainty": None, "reason": "not run over grooves"},
         "growth": columns([{"eigenvalue": rate} for _, rate in rates], [speed for speed, _ in rates]),
