@@ -60,7 +60,12 @@ def _exponents(linear, reach: int):
     # Unknowns Q_k and their rates s_k Q_k.
     left = np.block([[-np.diag(shift), np.eye(size)], [-k, -d - mass * shift[None, :]]])
     right = np.block([[np.eye(size), np.zeros((size, size))], [np.zeros((size, size)), mass]])
-    values, vectors = eig(left, right)
+    if np.all(np.diag(linear.mass)):
+        # Several times faster than the pencil.
+        left[size:] /= np.tile(np.diag(linear.mass), len(orders))[:, None]
+        values, vectors = np.linalg.eig(left)
+    else:
+        values, vectors = eig(left, right)
     finite = np.isfinite(values) & (np.abs(values) < 1e12)
     values, parts = values[finite], vectors[:size, finite].reshape(len(orders), n, -1)
     weights = np.sum(np.abs(parts) ** 2, axis=1)
