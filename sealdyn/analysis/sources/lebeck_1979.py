@@ -1,7 +1,7 @@
 """Lebeck, Teale & Pierce (1979), wavy rough seal: load support, friction and leakage at balance, against the film
 "reynolds" and Christensen's asperities.
 
-Of nine waves the friction is left out: it follows the load on the asperities, whose print is unexplained.  The report's
+Of nine waves the friction is left out: its printed digits are not to hand.  The report's
 dimensional numbers contradict its dimensionless ones; these are what is computed, with the half height c of the
 asperities, the outer radius and the speed as units.
 """
