@@ -61,7 +61,7 @@ def _exponents(linear, reach: int):
     left = np.block([[-np.diag(shift), np.eye(size)], [-k, -d - mass * shift[None, :]]])
     right = np.block([[np.eye(size), np.zeros((size, size))], [np.zeros((size, size)), mass]])
     if np.all(np.diag(linear.mass)):
-        # Several times faster than the pencil.
+        # Half the time of the pencil, of 60 rows and more.
         left[size:] /= np.tile(np.diag(linear.mass), len(orders))[:, None]
         values, vectors = np.linalg.eig(left)
     else:
