@@ -23,7 +23,7 @@ def check(source: Source, overrides: Overrides = ()) -> dict[str, Any]:
     """What `sealdyn check --json` prints, SI: the `scene` resolved, `model`, `equilibria`, `warnings`, `design_rules`.
     **Raises** ScenarioError for what cannot be run.
 
-    >>> sealdyn.check("fms.toml")["status"]
+    >>> str(sealdyn.check("fms.toml")["status"])
     'ok'
     """
     scenario = scenario_of(source, overrides)
@@ -33,7 +33,11 @@ def check(source: Source, overrides: Overrides = ()) -> dict[str, Any]:
 
 def design_rules(source: Source, overrides: Overrides = ()) -> list[dict[str, Any]]:
     """What the design rules find, broken ones first: `rule`, `verdict` ("fail", "note", "pass" ...), value, limit and
-    source of each.  **Raises** ScenarioError for what cannot be run."""
+    source of each.  **Raises** ScenarioError for what cannot be run.
+
+    >>> "fail" in {row["verdict"] for row in sealdyn.design_rules("fms.toml")}
+    False
+    """
     scenario = scenario_of(source, overrides)
     with scene_errors_of(scenario.name):
         return rules_of(scenario)
@@ -41,7 +45,11 @@ def design_rules(source: Source, overrides: Overrides = ()) -> list[dict[str, An
 
 def validate(source: str | None = None) -> list[dict[str, Any]]:
     """Published numbers beside computed ones, of one source ("zuk-1972") or of all, a row each with its `verdict`.
-    **Raises** ValueError for no such source."""
+    **Raises** ValueError for no such source.
+
+    >>> "FAILED" in {row["verdict"] for row in sealdyn.validate("green-1989")}
+    False
+    """
     names = source_names()
     wanted = names if source is None else [source.replace("_", "-")]
     if not set(wanted) <= set(names):
@@ -50,11 +58,21 @@ def validate(source: str | None = None) -> list[dict[str, Any]]:
 
 
 def compare(one: str | os.PathLike, other: str | os.PathLike) -> dict[str, Any]:
-    """What the archives of two runs have different, as `sealdyn compare --json` prints it.  **Raises** ArchiveError."""
+    """What the archives of two runs have different, as `sealdyn compare --json` prints it.  **Raises** ArchiveError.
+
+    >>> files = [sealdyn.run("fms.toml", {"film.clearance": gap}, out=f"{gap}.h5").archive for gap in (8e-6, 9e-6)]
+    >>> [row["key"] for row in sealdyn.compare(*files)["scene"]]
+    ['film.clearance']
+    """
     return comparison(one, other)
 
 
 def review(archives: Iterable[str | os.PathLike], out: str | os.PathLike = "report.html", title: str = "") -> Path:
     """Write one page of the archives of runs and studies for a design review, and return its path.  **Raises**
-    ArchiveError, and ScenarioError for a run whose scenario cannot be read again."""
+    ArchiveError, and ScenarioError for a run whose scenario cannot be read again.
+
+    >>> kept = sealdyn.run("fms.toml", out="kept.h5").archive
+    >>> sealdyn.review([kept], "page.html").name
+    'page.html'
+    """
     return page_of(list(archives), out, title, lambda path, _: rules_of(read_scenario(path)), sources_of_film)

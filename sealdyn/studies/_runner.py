@@ -438,7 +438,11 @@ def list_studies() -> dict[str, str]:
 
 
 def schema(radial: bool = False) -> dict[str, Any]:
-    """The JSON schema of scenario files of face seals (or of radial ones) with the settings of every study."""
+    """The JSON schema of scenario files of face seals (or of radial ones) with the settings of every study.
+
+    >>> "film" in sealdyn.schema()["properties"]
+    True
+    """
     found = json_schema(RadialFile if radial else ScenarioFile)
     tables = {name.replace("-", "_"): _table(name) for name in study_names()}
     study = found["properties"]["study"]

@@ -20,7 +20,7 @@ DAMPING = [[u.replace("/m", "*s/m").replace("/rad", "*s/rad") if "/" in u else f
            for row in STIFFNESS]  # fmt: skip
 ELEMENTS = ("frequency", "force", "motion")
 INFO = Info(
-    timed=("fms_reference", 2),
+    timed=("fmr_reference", 2),
     asks="What does the shaft feel of the seal?",
     refuses=("secondary-seal", "moment"),
     wavy=True,

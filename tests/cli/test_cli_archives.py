@@ -155,7 +155,7 @@ def test_validate_takes_one_source(tmp_path):
     assert answer.code == 0 and "tilt counted twice" in answer.out
     for name in ("zuk-1972", "zuk_1972"):
         checks = sealdyn("validate", name, "--json", cwd=tmp_path).found["checks"]
-        assert len(checks) == 24 and {check["source"] for check in checks} == {"Zuk (1972), sealing dam at cruise"}
+        assert len(checks) == 39 and {check["source"] for check in checks} == {"Zuk (1972), sealing dam at cruise"}
     assert sealdyn("validate", "green", cwd=tmp_path).err.count("green-1989") == 2
 
 

@@ -1,5 +1,7 @@
 """The motion as a film: both rings, tilts enlarged, the gap over the face, the orbit, and where on the time line."""
 
+import os
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -27,14 +29,25 @@ RINGS, TILTED = ("stator", "rotor"), ("relative", "rotor", "stator")
 PLANES = 36
 
 
-def animate(archive_path, out_path, turns: float = 4.0, per_turn: int = PER_TURN, progress=None) -> Path:
+def animate(
+    archive_path: str | os.PathLike,
+    out_path: str | os.PathLike,
+    turns: float = 4.0,
+    per_turn: int = PER_TURN,
+    progress: Callable[[float, float, str], None] | None = None,
+) -> Path:
     """Write the last `turns` turns of a run (of a shaft at rest, milliseconds) as a GIF or an MP4 (which needs the
     package imageio-ffmpeg), or the last picture as a PNG.
 
     `per_turn` pictures of a turn, of a face seal between samples by straight lines, of a radial seal at the nearest
     instants that are kept; `progress(done, end, words)`.  Returns the path.
     **Raises** ArchiveError for a run without a film thickness or gap, ValueError for more than moving.MOST pictures or
-    another kind of file, ImportError where MP4 cannot be made."""
+    another kind of file, ImportError where MP4 cannot be made.
+
+    >>> kept = sealdyn.run("fms.toml", out="kept.h5").archive
+    >>> sealdyn.animate(kept, "moved.png").name
+    'moved.png'
+    """
     out_path = Path(out_path)
     check_name(out_path)
     run = Run(archive_path)
