@@ -35,8 +35,8 @@ def design_rules(source: Source, overrides: Overrides = ()) -> list[dict[str, An
     """What the design rules find, broken ones first: `rule`, `verdict` ("fail", "note", "pass" ...), value, limit and
     source of each.  **Raises** ScenarioError for what cannot be run.
 
-    >>> "fail" in {row["verdict"] for row in sealdyn.design_rules("fms.toml")}
-    False
+    >>> sealdyn.design_rules("fms.toml")[0]["verdict"]
+    'fail'
     """
     scenario = scenario_of(source, overrides)
     with scene_errors_of(scenario.name):
