@@ -107,7 +107,7 @@ class Quantity:
 
     def _split(self, text: str) -> tuple[str, str]:
         """Number and unit of a string, with this quantity's own reading of `g`."""
-        match = NUMBER.fullmatch(text.strip().replace(MINUS, "-")) if len(text) < 200 else None
+        match = _number_and_unit(text) if len(text) < 200 else None
         if not match:
             raise QuantityError(quoted(text), self.expected())
         number, unit = match[1], match[2]
@@ -170,8 +170,13 @@ def is_gauge(value: Any) -> bool:
     if isinstance(value, dict):
         value = value.get("value")
     written = [match[2] for entry in (value if isinstance(value, list) else [value])
-               if isinstance(entry, str) and (match := NUMBER.fullmatch(entry.strip()))]  # fmt: skip
+               if isinstance(entry, str) and (match := _number_and_unit(entry))]  # fmt: skip
     return any(map(GAUGE.fullmatch, written))
+
+
+def _number_and_unit(text: str) -> re.Match | None:
+    """NUMBER of a string, a typeset minus included."""
+    return NUMBER.fullmatch(text.strip().replace(MINUS, "-"))
 
 
 class RadiusQuantity(Quantity):

@@ -13,7 +13,19 @@ from sealdyn.films._grooved.balance import Conditions, steady, steady_pair
 from sealdyn.films._grooved.mesh import mesh_of
 
 __all__ = [
-    "AREA", "FACES_TOML", "GAS", "LIQUID", "RINGS_TOML", "ROWS", "R_I", "R_O", "SPIRAL", "TEE", "film", "films_of",
+    "AREA",
+    "FACES_TOML",
+    "GAS",
+    "LIQUID",
+    "RINGS_TOML",
+    "ROWS",
+    "R_I",
+    "R_O",
+    "SEAL_TOML",
+    "SPIRAL",
+    "TEE",
+    "film",
+    "films_of",
     "pattern_of",
 ]  # fmt: skip
 ROWS = grooved_rows()
@@ -40,6 +52,19 @@ transverse_inertia = "3.5e-4 kg*m^2"
 [stator.support]
 axial_stiffness = "1.64e4 N/m"
 tilt_stiffness = "31 N*m/rad"
+"""
+SEAL_TOML = f"""
+[shaft]
+speed = "1000 rad/s"
+[film]
+{FACES_TOML}
+outer_pressure = "5 bar"
+clearance = "3 um"
+{RINGS_TOML}
+axial_damping = "1e3 N*s/m"
+tilt_damping = "1.4 N*m*s/rad"
+[run]
+turns = 5
 """
 R_I, R_O = 0.0516, 0.0616
 AREA = math.pi * (R_O**2 - R_I**2)

@@ -19,6 +19,7 @@ from ..numerics.kernel import (
     call_wrench_jacobian,
     outer_kernel,
 )
+from ..scene.patterns import EVEN
 from ..scene.scene import SceneError
 from .native import LOAD_TYPE, Value
 
@@ -34,8 +35,6 @@ QUADRATURE = 1e-12
 EACH = np.arange(6)
 # Sectors of which there are more than mean, cosine and sine; what those that are alike may differ by, as a share.
 LEAST_SECTORS, ALIKE = 4, 1e-9
-# Fewest sectors around which tilts about all axes are answered alike.
-EVEN = 3
 
 
 def moved_gaps(s: np.ndarray, steps: tuple[float, float, float, float]) -> np.ndarray:

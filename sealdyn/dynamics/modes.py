@@ -55,6 +55,16 @@ class RingNumbers:
             stiffness += 2.0 * self.twice_a_turn().real
         return stiffness
 
+    def alone(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Mass, damping and stiffness (3, 3) of the ring on its support, whose damper turns with it."""
+        damping = self.support_damping()
+        stiffness = self.support_stiffness() - self.spin * damping @ QUARTER_TURN
+        return diagonal(self.mass, self.inertia), damping - self.polar * self.spin * QUARTER_TURN, stiffness
+
+    def support_at(self, w: float) -> np.ndarray:
+        """Dynamic stiffness (3, 3) of the support at a frequency (rad/s): what a carrier that moves alone meets."""
+        return self.alone()[2] + 1j * w * self.support_damping()
+
     def twice_a_turn(self) -> np.ndarray:
         """Complex matrix C (3, 3) of an uneven support: beside its mean it is C exp(2 i W t) and the conjugate."""
         matrix = np.zeros((3, 3), dtype=complex)
@@ -126,10 +136,8 @@ class LinearScene:
         self.mass, self.damping, self.stiffness = np.zeros((3, n, n))
         for a, k in enumerate(self.floating):
             ring, at = rings[k], slice(3 * a, 3 * a + 3)
-            support_d, support_k = ring.support_damping(), ring.support_stiffness()
-            self.mass[at, at] = diagonal(ring.mass, ring.inertia)
-            self.damping[at, at] += support_d - ring.polar * ring.spin * QUARTER_TURN
-            self.stiffness[at, at] += support_k - ring.spin * support_d @ QUARTER_TURN
+            for whole, part in zip((self.mass, self.damping, self.stiffness), ring.alone(), strict=True):
+                whole[at, at] += part
             for b, j in enumerate(self.floating):
                 to = slice(3 * b, 3 * b + 3)
                 self.damping[at, to] += ring.sign * rings[j].sign * film_damping
@@ -337,9 +345,7 @@ class LinearScene:
         ring = self.rings[harmonic.ring]
         if ring.floats:
             at = 3 * self.floating.index(harmonic.ring)
-            support_d, support_k = ring.support_damping(), ring.support_stiffness()
-            carrier = support_k + 1j * w * support_d - ring.spin * support_d @ QUARTER_TURN
-            force[at : at + 3] = carrier @ harmonic.carrier + support_k @ harmonic.own
+            force[at : at + 3] = ring.support_at(w) @ harmonic.carrier + ring.support_stiffness() @ harmonic.own
             if harmonic.moment is not None:
                 force[at : at + 3] += harmonic.moment
         else:

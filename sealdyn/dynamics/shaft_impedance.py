@@ -16,7 +16,7 @@ rotor is the shaft's own."""
 import numpy as np
 
 from ..scene.rings import ROTOR, STATOR
-from .modes import QUARTER_TURN, LinearScene, RingNumbers, diagonal
+from .modes import LinearScene, RingNumbers
 
 
 def at_shaft(linear: LinearScene, frequency: float) -> np.ndarray:
@@ -31,15 +31,10 @@ def at_shaft(linear: LinearScene, frequency: float) -> np.ndarray:
         film = film - film @ np.linalg.solve(_alone(stator, frequency) + film, film)
     if not rotor.floats:
         return film
-    support = _support(rotor, frequency)
+    support = rotor.support_at(frequency)
     return support - support @ np.linalg.solve(_alone(rotor, frequency) + film, support)
 
 
-def _support(ring: RingNumbers, w: float) -> np.ndarray:
-    damping = ring.support_damping()
-    return ring.support_stiffness() + 1j * w * damping - ring.spin * damping @ QUARTER_TURN
-
-
 def _alone(ring: RingNumbers, w: float) -> np.ndarray:
-    inertia = -(w**2) * diagonal(ring.mass, ring.inertia) - 1j * w * ring.polar * ring.spin * QUARTER_TURN
-    return inertia + _support(ring, w)
+    mass, damping, stiffness = ring.alone()
+    return stiffness + 1j * w * damping - w**2 * mass

@@ -26,9 +26,14 @@ MOST_WAVES = 16
 MOST_COLUMNS = 48
 # Bands of one share of land each, over dimples.
 BANDS = 16
-# Keys of a row of grooves that it has if it is one of dimples, or if it is not.
-PARTS = {"inner_radius": False, "outer_radius": False, "share": False,
-         "radius": True, "length": True, "width": True}  # fmt: skip
+# Keys that a row of grooves has, by its shape, and no other one.
+PARTS = {
+    **dict.fromkeys(("inner_radius", "outer_radius", "share"), ("spiral", "tee", "pad")),
+    **dict.fromkeys(("radius", "length", "width"), ("dimples",)),
+    **dict.fromkeys(("stem_outer_radius", "stem_share"), ("tee",)),
+}
+# Fewest grooves with which tilts about all axes are answered alike.
+EVEN = 3
 # Finer than a hundredth of the circle a surface is rough or grooved, not wavy.
 HIGHEST_ORDER = 100
 
@@ -190,15 +195,16 @@ def _shape_errors(one: Grooves, film) -> list[tuple[str, str, str]]:
         bad.append(("count", f"{one.count}", "a whole number from 1"))
     if not 0.0 <= one.depth < math.inf:
         bad.append(("depth", f"{one.depth:g} m", "a finite depth >= 0, by which the film is thicker in a groove"))
-    dimples = one.shape == "dimples"
-    for part, of_dimples in PARTS.items():
-        if (getattr(one, part) is not None) != (dimples == of_dimples):
-            here = f'shape = "{one.shape}"'
-            bad.append((part, "nothing" if dimples == of_dimples else "a value",
-                        f"a value, with {here}" if dimples == of_dimples else f"nothing, with {here}"))  # fmt: skip
+    for part, shapes in PARTS.items():
+        if (getattr(one, part) is not None) != (one.shape in shapes):
+            others = " or ".join(f'"{shape}"' for shape in shapes)
+            given = one.shape not in shapes
+            bad.append(
+                (part, "a value" if given else "nothing", f"nothing, or shape = {others}" if given else "a value")
+            )
     if bad:
         return bad
-    if dimples:
+    if one.shape == "dimples":
         return _dimple_errors(one, film)
     if not film.inner_radius <= one.inner_radius < one.outer_radius <= film.outer_radius:
         found = f"{one.inner_radius:g} to {one.outer_radius:g} m"
@@ -206,9 +212,6 @@ def _shape_errors(one: Grooves, film) -> list[tuple[str, str, str]]:
         bad.append(("inner_radius", found, expected))
     if not 0.0 < one.share < 1.0:
         bad.append(("share", f"{one.share:g}", "a share of the pitch above 0 and below 1"))
-    for part in ("stem_outer_radius", "stem_share"):
-        if (getattr(one, part) is not None) != tee:
-            bad.append((part, "nothing" if tee else "a value", "a value" if tee else 'nothing, or shape = "tee"'))
     if tee and not bad:
         if not one.outer_radius < one.stem_outer_radius <= film.outer_radius:
             expected = f"more than outer_radius = {one.outer_radius:g} m, at most that of the face"
@@ -231,8 +234,6 @@ def _shape_errors(one: Grooves, film) -> list[tuple[str, str, str]]:
 def _dimple_errors(one: Grooves, film) -> list[tuple[str, str, str]]:
     bad = [(part, f"{getattr(one, part):g} m", "a length above 0") for part in ("length", "width")
            if not getattr(one, part) > 0.0]  # fmt: skip
-    bad += [(part, "a value", 'nothing, or shape = "tee"') for part in ("stem_outer_radius", "stem_share")
-            if getattr(one, part) is not None]  # fmt: skip
     if bad:
         return bad
     low, high = one.reach

@@ -7,7 +7,6 @@ from dataclasses import asdict, dataclass, replace
 import numpy as np
 
 from .. import archive
-from ..dynamics.condensation import EVEN
 from ..dynamics.intervals import constant_and_slope, largest_value
 from ..dynamics.model import Model
 from ..dynamics.run_state import Caution, Concern, RunState
@@ -16,7 +15,7 @@ from ..faces.geometry import COLLAPSE, DZ, FLOOR
 from ..scenario.reader import Scenario
 from ..scenario.tables import Run
 from ..scene.gas import viscosity_of
-from ..scene.patterns import grooves_of
+from ..scene.patterns import EVEN, grooves_of
 from ..scene.radial import RadialScene
 from ..scene.rings import RING_NAMES
 from ..scene.scene import Scene, SceneError

@@ -301,10 +301,12 @@ def roots_over_speed(scene, speeds, tools) -> tuple[list[dict], dict, list[str]]
     return held, {name: np.array(values) @ [1.0, 1j] for name, values in known.items() if None not in values}, notes
 
 
-def thresholds(scene, tools) -> tuple[list[tuple[float, float | None]], list[float]]:
-    """Speeds (rad/s) of SPEEDS that have a film, with the growth rate (1/s) of the least damped tilt, None of one that
-    only the count knows, and those between them at which roots begin to grow or cease to, rising."""
-    roots, own = RootsOverSpeed(scene), abs(initially(scene.shaft.speed)) or 1000.0
+def thresholds(roots: RootsOverSpeed, tools) -> tuple[list[tuple[float, float | None]], list[float]]:
+    """Speeds (rad/s) of SPEEDS, of the scene's own, that have a film, with the growth rate (1/s) of the least damped
+    tilt, None of one that only the count knows, and those between them at which roots begin to grow or cease to,
+    rising."""
+    scene = roots.scene
+    own = abs(initially(scene.shaft.speed)) or 1000.0
     roots.prepare()
     top = min(SPEEDS[1] * own, max(FASTEST / scene.film.outer_radius, own))
     held = _rows(roots, np.geomspace(SPEEDS[0] * own, top, SPEEDS[2]), tools, "roots")
@@ -350,7 +352,8 @@ def _settled_film(scene) -> AlignedFilm | None:
 
 def margins_over_grooves(scene, tools) -> dict:
     """The margins of the study stability at a scene's own values."""
-    row, ends = RootsOverSpeed(scene)(initially(scene.shaft.speed)), thresholds(scene, tools)[1]
+    around = RootsOverSpeed(scene)
+    row, ends = around(initially(scene.shaft.speed)), thresholds(around, tools)[1]
     roots = {name: root for name, root in row.items() if name.startswith(MOTIONS) and root}
     least = max(roots, key=lambda name: roots[name][0], default=None)
     tilt = max((name for name in roots if name.startswith("tilt")), key=lambda name: roots[name][0], default=None)

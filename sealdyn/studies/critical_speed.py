@@ -111,9 +111,9 @@ def run(scenario, settings, tools) -> Answer:
 def over_grooves(scene, tools) -> dict:
     """The same of faces with grooves, by the roots of the rings on the film of one pitch alone."""
     # Sparse matrices are loaded for grooves only.
-    from ._grooved_roots import thresholds
+    from ._grooved_roots import RootsOverSpeed, thresholds
 
-    rates, found = thresholds(frozen_at_start(scene), tools)
+    rates, found = thresholds(RootsOverSpeed(frozen_at_start(scene)), tools)
     return {
         "formula": None, "formula_reason": "grooves: no published formula", "unit": "rad/s",
         "eigenvalue": min(found, default=None), "thresholds": found, "speeds_held": None,

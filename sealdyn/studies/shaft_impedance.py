@@ -14,19 +14,17 @@ from ..scenario.settings import values_in_si
 from ..scene.scene import SceneError
 from ..scene.variants import arrangement, frozen_at_start
 from . import Info
+from .coefficients import DAMPING_UNITS, ELEMENTS, FORCES, ORDER, STIFFNESS_UNITS
 
-STIFFNESS = [["N/m", "N/rad", "N/rad"], ["N", "N*m/rad", "N*m/rad"], ["N", "N*m/rad", "N*m/rad"]]
-DAMPING = [[u.replace("/m", "*s/m").replace("/rad", "*s/rad") if "/" in u else f"{u}*s" for u in row]
-           for row in STIFFNESS]  # fmt: skip
-ELEMENTS = ("frequency", "force", "motion")
+ALONG = ("frequency", *ELEMENTS)
 INFO = Info(
     timed=("fmr_reference", 2),
     asks="What does the shaft feel of the seal?",
     refuses=("secondary-seal", "moment"),
     wavy=True,
     grooved=True,
-    units={"frequency": "rad/s", "speed": "rad/s", "stiffness": STIFFNESS, "damping": DAMPING},
-    along={"stiffness": ELEMENTS, "damping": ELEMENTS},
+    units={"frequency": "rad/s", "speed": "rad/s", "stiffness": STIFFNESS_UNITS, "damping": DAMPING_UNITS},
+    along={"stiffness": ALONG, "damping": ALONG},
 )
 # Frequencies without any asked, in shaft speeds.
 LOWEST, HIGHEST, COUNT = 0.05, 3.0, 60
@@ -60,7 +58,7 @@ def run(scenario, settings, tools) -> Answer:
         tools.say((k + 1) / len(frequencies))
     z = np.array(found)
     numbers = {
-        "force": ["force", "moment_x", "moment_y"], "motion": ["axial", "tilt_x", "tilt_y"],
+        "force": list(FORCES), "motion": list(ORDER),
         "frequency": frequencies.tolist(), "speed": scene.shaft.speed, "arrangement": arrangement(scene),
         "stiffness": z.real.tolist(), "damping": (z.imag / frequencies[:, None, None]).tolist(),
     }  # fmt: skip

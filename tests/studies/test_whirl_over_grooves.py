@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from command import SCENARIOS
-from grooved_faces import FACES_TOML, R_I, R_O, RINGS_TOML
+from grooved_faces import R_I, R_O, SEAL_TOML
 
 from sealdyn import read_scenario, run_study
 from sealdyn.closed_form import fmr_critical_speed
@@ -45,20 +45,7 @@ def test_the_threshold_over_plain_grooves_is_the_closed_form():
 @pytest.fixture(scope="module")
 def scenario(tmp_path_factory):
     """The seal of row gas_5bar on six grooves and coarse cells, with a closing force of its own."""
-    text = f"""
-[shaft]
-speed = "1000 rad/s"
-[film]
-{FACES_TOML}
-outer_pressure = "5 bar"
-clearance = "3 um"
-gas_reynolds.columns = 12
-{RINGS_TOML.replace("count = 12", "count = 6")}
-axial_damping = "1e3 N*s/m"
-tilt_damping = "1.4 N*m*s/rad"
-[run]
-turns = 5
-"""
+    text = SEAL_TOML.replace("count = 12", "count = 6").replace("[film]", "[film]\ngas_reynolds.columns = 12")
     path = tmp_path_factory.mktemp("grooves") / "six.toml"
     path.write_text(text, encoding="utf-8")
     return read_scenario(path)

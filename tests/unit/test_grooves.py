@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from command import SCENARIOS
-from grooved_faces import AREA, FACES_TOML, R_I, R_O, RINGS_TOML, ROWS
+from grooved_faces import AREA, R_I, R_O, ROWS, SEAL_TOML
 
 from sealdyn import read_scenario, run_study
 from sealdyn.analysis.check import checked
@@ -30,19 +30,6 @@ from sealdyn.studies import stribeck
 from sealdyn.studies._grooved import flows_over_grooves, tracking
 from sealdyn.studies._grooved_roots import RootsOverSpeed, modes, rings_of
 
-TEXT = f"""
-[shaft]
-speed = "1000 rad/s"
-[film]
-{FACES_TOML}
-outer_pressure = "5 bar"
-clearance = "3 um"
-{RINGS_TOML}
-axial_damping = "1e3 N*s/m"
-tilt_damping = "1.4 N*m*s/rad"
-[run]
-turns = 5
-"""
 SPIRAL = Grooves(12, 6e-6, 0.0555, R_O, 0.5, angle=math.radians(15.0))
 SUPPORT = Support(axial_stiffness=1.64e4, axial_damping=1e3, tilt_stiffness=31.0, tilt_damping=1.4)
 RING = dict(mass=0.2, transverse_inertia=3.5e-4, support=SUPPORT)
@@ -60,7 +47,7 @@ def seal(film=GAS, rotor=(SPIRAL,), stator=(), speed=1000.0, floats="stator", **
 @pytest.fixture(scope="module")
 def scenario(tmp_path_factory):
     path = tmp_path_factory.mktemp("grooves") / "dry.toml"
-    path.write_text(TEXT)
+    path.write_text(SEAL_TOML)
     return read_scenario(path)
 
 

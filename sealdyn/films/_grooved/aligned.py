@@ -20,6 +20,7 @@ from ...scene.patterns import Grooves, grooves_of
 from ...scene.scene import SceneError
 from .balance import COLUMNS, Conditions, NoSteadyFilm, Steady, extrapolated, order, steady
 from .dimpled_mesh import mesh_on
+from .mesh import Mesh
 from .motion import Motion, axial_film
 
 # Columns of the coarser mesh where a force is wanted at many clearances; e-folds of the clearance from node to node;
@@ -104,14 +105,19 @@ class AlignedFilm:
         return float(self.fine.p.min())
 
 
-def meshes_of(scene, columns: int):
-    """The coarser and the finer mesh of a scene.  Raises SceneError for grooves so many and so flat that it has too
-    many nodes."""
-    (face, (one,)), film = grooves_of(scene), scene.film
+def mesh_of_row(face: str, one: Grooves, film, columns: float, times: int, least: int = 2) -> Mesh:
+    """One pitch of a row of grooves in a face, between the radii of a `Film` table.  Raises SceneError for grooves so
+    many and so flat, or dimples so small, that it has too many nodes."""
     try:
-        return [mesh_on(pattern_of(one), film.inner_radius, film.outer_radius, columns, times) for times in (1, 2)]
+        return mesh_on(pattern_of(one), film.inner_radius, film.outer_radius, columns, times, least)
     except ValueError as error:
-        raise SceneError(f"{face}.grooves", str(error), "fewer grooves, or steeper ones") from None
+        raise SceneError(f"{face}.grooves", str(error), "fewer, steeper or larger ones") from None
+
+
+def meshes_of(scene, columns: int) -> list[Mesh]:
+    """The coarser and the finer mesh of a scene.  Raises SceneError as `mesh_of_row`."""
+    face, (one,) = grooves_of(scene)
+    return [mesh_of_row(face, one, scene.film, columns, times) for times in (1, 2)]
 
 
 def aligned_film(scene, clearance: float, columns: int = COLUMNS, near: AlignedFilm | None = None) -> AlignedFilm:

@@ -43,11 +43,10 @@ from ...scene.gas import GasReynolds, gas_of
 from ...scene.patterns import Grooves, alike_sectors, grooves_of
 from ...scene.scene import SceneError
 from .._contract import FilmUnknowns
-from .aligned import cavity_of, pattern_of
+from .aligned import cavity_of, mesh_of_row
 from .balance import Conditions as Aligned
 from .balance import Film as Balance
 from .balance import order as order_of_tips
-from .dimpled_mesh import mesh_on
 
 # Block after the faces: nodes, free ones and triangles of a pitch, pitches that are computed, pitches of the circle, 1
 # of a patterned rotor and -1 of a stator, whether a gas, what slip adds to K at a temperature of 1 K over h^2 (m/s),
@@ -118,12 +117,8 @@ def cell_order(table) -> float:
 
 def _mesh(table):
     """One pitch.  Raises SceneError where it has no mesh."""
-    try:
-        # Twice a mesh of half the columns, which is that of `halved`.
-        return mesh_on(pattern_of(table.grooves), table.inner_radius, table.outer_radius,
-                       0.5 * options_of(table).columns, table.times, least=1)  # fmt: skip
-    except ValueError as error:
-        raise SceneError(f"{table.face}.grooves", str(error), "fewer grooves, or steeper ones") from None
+    # Twice a mesh of half the columns, which is that of `halved`.
+    return mesh_of_row(table.face, table.grooves, table, 0.5 * options_of(table).columns, table.times, least=1)
 
 
 def parameters(table, clearance: float, error: float = 1e-8) -> np.ndarray:

@@ -14,7 +14,7 @@ from itertools import pairwise
 import numpy as np
 
 from ...faces.pattern import Dimples, Pattern
-from .mesh import MOST_NODES, Mesh, mesh_of
+from .mesh import MOST_NODES, Mesh, ahead, cut_quads, mesh_of
 
 # Halvings after which a crossing is found; level within which a node lies on the edge.
 HALVINGS, ON = 50, 1e-12
@@ -74,29 +74,25 @@ def _spread(ends, steps, times: int) -> np.ndarray:
 def _on_the_edge(pattern, radial, around, pitch: float):
     """Nodes of the grid (rows, n) with those moved that an edge passes nearby, and on which side each now lies: -1
     inside, 0 on the edge, 1 outside."""
-    level = pattern.level(np.exp(radial), around)
-    moved, places = np.full(level.shape, np.inf), np.stack([radial, around])
-    rows = np.arange(len(radial))[:, None] * np.ones(radial.shape[1], dtype=int)
-    for axis, ahead in ((0, 1), (1, 1)):
-        after = np.roll(np.stack([radial, around]), -ahead, axis=axis + 1)
-        if axis == 1:
-            after[1, :, -1] += pitch
-        other = np.roll(level, -ahead, axis=axis)
+    level, grid = pattern.level(np.exp(radial), around), np.stack([radial, around])
+    moved, places, last = np.full(level.shape, np.inf), grid.copy(), len(radial) - 2
+    above = np.roll(grid, -1, axis=1), np.roll(level, -1, axis=0)
+    beside = np.stack([ahead(radial), ahead(around, pitch)]), ahead(level)
+    for upwards, (after, other) in ((True, above), (False, beside)):
         crossed = level * other < 0.0
-        if axis == 0:
-            crossed[-1] = False
-        here = np.argwhere(crossed)
-        begin, end = np.stack([radial, around])[:, crossed], after[:, crossed]
+        crossed[-1] &= not upwards
+        here, begin, end = np.argwhere(crossed), grid[:, crossed], after[:, crossed]
         share = _crossing(pattern, begin, end, level[crossed])
         near = share <= 0.5
-        if axis == 0:
+        if upwards:
             # Nodes on the edges of the face stay there.
-            near = np.where(rows[crossed] == 0, False, np.where(rows[crossed] == len(radial) - 2, True, near))
+            near = (near | (here[:, 0] == last)) & (here[:, 0] > 0)
         for (i, j), t, first, a, b in zip(here, share, near, begin.T, end.T, strict=True):
-            place, way = a + t * (b - a), t if first else 1.0 - t
-            k, m = (i, j) if first else ((i + 1, j) if axis == 0 else (i, (j + 1) % level.shape[1]))
-            if not first and axis == 1 and j + 1 == level.shape[1]:
-                place = place - [0.0, pitch]
+            place, way, (k, m) = a + t * (b - a), t if first else 1.0 - t, (i, j)
+            if not first:
+                k, m = (i + 1, j) if upwards else (i, (j + 1) % level.shape[1])
+                if m < j:
+                    place = place - [0.0, pitch]
             if way < moved[k, m]:
                 moved[k, m], places[:, k, m] = way, place
     side = np.where(np.isfinite(moved) | (np.abs(level) < ON), 0.0, np.sign(level))
@@ -116,22 +112,8 @@ def _crossing(pattern, begin, end, first) -> np.ndarray:
 
 def _cut(radial, around, side, pitch: float) -> tuple[np.ndarray, np.ndarray]:
     """Corners and shifts of the triangles: every quad cut along the shorter diagonal that does not pass an edge."""
-    rows, n = radial.shape
-    node, shift = np.arange(rows * n).reshape(rows, n), np.zeros((rows, n), dtype=int)
-    shift[:, -1] = 1
-
-    def ahead(part):
-        return np.roll(part, -1, axis=1)
-
-    a, b, c, d = node[:-1].ravel(), ahead(node)[:-1].ravel(), node[1:].ravel(), ahead(node)[1:].ravel()
-    after = ahead(around) + pitch * shift
+    after = ahead(around, pitch)
     up = np.hypot(after[1:] - around[:-1], ahead(radial)[1:] - radial[:-1])
     down = np.hypot(around[1:] - after[:-1], radial[1:] - ahead(radial)[:-1])
     passes_up, passes_down = side[:-1] * ahead(side)[1:] < 0.0, ahead(side)[:-1] * side[1:] < 0.0
-    forward = (passes_down | (~passes_up & (up < down))).ravel()[:, None]
-    s, zero = shift[:-1].ravel(), np.zeros(len(a), dtype=int)
-    first = np.where(forward, np.stack([a, d, b], 1), np.stack([a, c, b], 1))
-    second = np.where(forward, np.stack([a, c, d], 1), np.stack([b, c, d], 1))
-    first_shift = np.where(forward, np.stack([zero, s, s], 1), np.stack([zero, zero, s], 1))
-    second_shift = np.where(forward, np.stack([zero, zero, s], 1), np.stack([s, zero, s], 1))
-    return np.concatenate([first, second]), np.concatenate([first_shift, second_shift])
+    return cut_quads(passes_down | (~passes_up & (up < down)))

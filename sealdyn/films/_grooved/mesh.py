@@ -119,21 +119,11 @@ def mesh_of(
     phi = xi + edges.slope * (np.clip(u, low, high) - math.log(edges.reference))[:, None]
 
     rows, n = len(u), len(xi)
-    node = np.arange(rows * n).reshape(rows, n)
-    ahead, shift = np.roll(node, -1, axis=1), np.zeros((rows, n), dtype=int)
-    shift[:, -1] = 1
-    after = np.roll(phi, -1, axis=1) + pitch * shift
-    # Of each quad: here and ahead in its row, and the same in the row above.
-    a, b, c, d = node[:-1].ravel(), ahead[:-1].ravel(), node[1:].ravel(), ahead[1:].ravel()
-    forward, backward = np.abs(after[1:] - phi[:-1]).ravel(), np.abs(phi[1:] - after[:-1]).ravel()
+    after = ahead(phi, pitch)
+    forward, backward = np.abs(after[1:] - phi[:-1]), np.abs(phi[1:] - after[:-1])
     # Of two that are as long, so that meshes of mirrored patterns are mirror images.
     up = forward < backward * (1.0 - SAME) if edges.slope > 0.0 else forward <= backward * (1.0 + SAME)
-    s, zero = shift[:-1].ravel(), np.zeros(len(a), dtype=int)
-    first = np.where(up[:, None], np.stack([a, d, b], 1), np.stack([a, c, b], 1))
-    second = np.where(up[:, None], np.stack([a, c, d], 1), np.stack([b, c, d], 1))
-    first_shift = np.where(up[:, None], np.stack([zero, s, s], 1), np.stack([zero, zero, s], 1))
-    second_shift = np.where(up[:, None], np.stack([zero, zero, s], 1), np.stack([s, zero, s], 1))
-    corners, shifts = np.concatenate([first, second]), np.concatenate([first_shift, second_shift])
+    corners, shifts = cut_quads(up)
 
     radial, around = np.repeat(u, n), phi.ravel()
     middle_u = radial[corners].mean(axis=1)
@@ -144,6 +134,29 @@ def mesh_of(
     for _ in range(bisections):
         mesh = _bisected(mesh, tips)
     return mesh
+
+
+def ahead(values: np.ndarray, more: float = 0) -> np.ndarray:
+    """Values (rows, n) of a sector at the next column; beyond the last one the first, and so much `more`."""
+    found = np.roll(values, -1, axis=1)
+    found[:, -1] += more
+    return found
+
+
+def cut_quads(up: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Corners and shifts (triangles, 3) of a sector's grid whose quads (rows - 1, n) are cut from here to the next
+    column above (`up`), or from the next column to above here."""
+    rows, n = up.shape[0] + 1, up.shape[1]
+    node, shift = np.arange(rows * n).reshape(rows, n), np.zeros((rows, n), dtype=int)
+    shift[:, -1] = 1
+    # Of each quad: here and ahead in its row, and the same in the row above.
+    a, b, c, d = node[:-1].ravel(), ahead(node)[:-1].ravel(), node[1:].ravel(), ahead(node)[1:].ravel()
+    s, zero, up = shift[:-1].ravel(), np.zeros(len(a), dtype=int), up.ravel()[:, None]
+    first = np.where(up, np.stack([a, d, b], 1), np.stack([a, c, b], 1))
+    second = np.where(up, np.stack([a, c, d], 1), np.stack([b, c, d], 1))
+    first_shift = np.where(up, np.stack([zero, s, s], 1), np.stack([zero, zero, s], 1))
+    second_shift = np.where(up, np.stack([zero, zero, s], 1), np.stack([s, zero, s], 1))
+    return np.concatenate([first, second]), np.concatenate([first_shift, second_shift])
 
 
 def _breaks(edges: Edges, inner_radius: float, outer_radius: float) -> list[float]:

@@ -28,11 +28,10 @@ from functools import cached_property
 import numpy as np
 from scipy.sparse.linalg import splu
 
+from ...scene.patterns import EVEN
 from .balance import PERMUTATION, Assembly, Steady
 from .mesh import whole_circle
 
-# Fewest pitches to the circle of which tilts around the axes answer alike.
-FEWEST = 3
 # (dz, g_x, g_y) to (dz, g, g*), of force and moments alike, and back.
 TO_TURNS = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 1j], [0.0, 1.0, -1j]])
 FROM_TURNS = np.linalg.inv(TO_TURNS)
@@ -104,7 +103,7 @@ class Motion:
     @property
     def uneven(self) -> bool:
         """Whether tilts about different axes of the pattern are answered differently."""
-        return self.steady.film.mesh.count < FEWEST
+        return self.steady.film.mesh.count < EVEN
 
     @cached_property
     def circle(self) -> LinearFilm:

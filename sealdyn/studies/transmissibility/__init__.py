@@ -107,11 +107,9 @@ def run(scenario, settings, tools) -> Answer:
     top, held = settings.speed_to, None
     if top is None:
         asked = 3 * own_speed or 3000.0
-        top = (
-            asked
-            if grooved
-            else min(held_speeds(seal.model, seal.model.start, 1e-3 * asked, asked)[1] for seal in seals.values())
-        )
+        ends = [held_speeds(seal.model, seal.model.start, 1e-3 * asked, asked)[1] for seal in seals.values()
+                if not grooved]  # fmt: skip
+        top = min([asked, *ends])
         held = [settings.speed_from, top] if top < asked else None
     points = max(2, settings.points or (POINTS_OVER_GROOVES if grooved else POINTS))
     # At rest grooves do not pump.
