@@ -64,6 +64,13 @@ def test_strings_with_units(kind, text, si):
     assert read(getattr(units, kind), text) == pytest.approx(si, rel=1e-15)
 
 
+def test_a_gauge_pressure_is_known_as_such_however_its_minus_is_typeset():
+    """Of what is read as one: archives keep which values were."""
+    for text in ("-0.5 barg", "\N{MINUS SIGN}0.5 barg", "0.5 MPaG"):
+        assert units.is_gauge(text) and units.is_gauge({"time": [0.0], "value": [text]})
+    assert not units.is_gauge("\N{MINUS SIGN}0.5 bar") and not units.is_gauge(3.0)
+
+
 def test_decimal_text_gives_the_nearest_float():
     # 10 * 1e-6 in floats is 9.999999999999999e-06
     assert read(units.Length, "10 um") == 1e-5
