@@ -115,7 +115,7 @@ def over_grooves(scene, tools) -> dict:
 
     rates, found = thresholds(RootsOverSpeed(frozen_at_start(scene)), tools)
     return {
-        "formula": None, "formula_reason": "grooves: no published formula", "unit": "rad/s",
+        "formula": None, "formula_reason": "none is published over grooves", "unit": "rad/s",
         "eigenvalue": min(found, default=None), "thresholds": found, "speeds_held": None,
         "rotor_damper": None, "undamped_rotor": None,
         "own_speed": abs(initially(scene.shaft.speed)),
@@ -381,7 +381,9 @@ def _tables(numbers) -> list[Table]:
                ("growth_rate", "in time"), ("growth_rate", "uncertainty"), ("1", "apart"), ("1", "failed")]  # fmt: skip
     parts = [growth[name] for name in ("eigenvalue", "time_domain", "uncertainty")]
     over = [speed / eigen - 1.0 if eigen else None for speed in growth["speed"]]
-    rows = [*zip(growth["speed"], over, *parts, disagreements(growth), growth["failed"], strict=True)]
+    # Of speeds that were not run nothing is known.
+    apart = [apart if rate is not None else None for apart, rate in zip(disagreements(growth), parts[1], strict=True)]
+    rows = [*zip(growth["speed"], over, *parts, apart, growth["failed"], strict=True)]
     tables.append(Table("growth", columns, rows))
     if time.get("numerical_damping") is not None:
         columns = [("1", "method"), ("1", "accuracy"), ("growth_rate", "damping of its own"),

@@ -68,9 +68,12 @@ def _is_deep(row: dict, r, theta) -> np.ndarray:
     pitch = 2.0 * np.pi / row["count"]
     if row["shape"] == "dimples":
         off = np.mod(theta - row["phase"] + 0.5 * pitch, pitch) - 0.5 * pitch
-        x, y, angle = row["radius"] * off, row["radius"] * np.log(r / row["radius"]), row["angle"] or 0.0
-        along, across = x * np.cos(angle) + y * np.sin(angle), y * np.cos(angle) - x * np.sin(angle)
-        return np.hypot(2.0 * along / row["length"], 2.0 * across / row["width"]) < 1.0
+        y, angle, deep = row["radius"] * np.log(r / row["radius"]), row["angle"] or 0.0, False
+        # Neighbours may overlap.
+        for x in (row["radius"] * (off + turned) for turned in (-pitch, 0.0, pitch)):
+            along, across = x * np.cos(angle) + y * np.sin(angle), y * np.cos(angle) - x * np.sin(angle)
+            deep = deep | (np.hypot(2.0 * along / row["length"], 2.0 * across / row["width"]) < 1.0)
+        return deep
     low, high = row["inner_radius"], row["outer_radius"]
     bend = np.log(r / low) / np.tan(row["angle"]) if row["shape"] == "spiral" else 0.0
     share = np.abs(np.mod((theta - row["phase"] - bend) / pitch + 0.5, 1.0) - 0.5) * 2.0
