@@ -18,7 +18,7 @@ from .coefficients import DAMPING_UNITS, ELEMENTS, FORCES, ORDER, STIFFNESS_UNIT
 
 ALONG = ("frequency", *ELEMENTS)
 INFO = Info(
-    timed=("fmr_reference", 2),
+    timed=("fmr_reference", 1),
     asks="What does the shaft feel of the seal?",
     refuses=("secondary-seal", "moment"),
     wavy=True,

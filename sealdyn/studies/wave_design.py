@@ -24,7 +24,7 @@ from ..units import BendingStiffness, Length, VolumeFlow
 from . import Info
 
 INFO = Info(
-    timed=("lebeck_driven", 20),
+    timed=("lebeck_driven", 13),
     asks="Which waves on which ring carry most?",
     wavy=True,
     units={

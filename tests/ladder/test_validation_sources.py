@@ -14,6 +14,7 @@ from sealdyn import films as films_there_are
 from sealdyn.analysis.sources import (
     brief,
     green_1989,
+    lebeck_1979_waves,
     ludwig_allen,
     report,
     source_module,
@@ -131,6 +132,15 @@ def test_driven_waves_of_an_elastic_ring(checks):
     assert {row["verdict"] for row in by["largest_stable_waviness"]} == {"rounding"}
     assert all(0.65 < row["computed"] < 0.72 for row in by["largest_stable_waviness"])
     assert {row["verdict"] for row in by["optimum_stiffness"] + by["optimum_load_support"]} == {"unexplained"}
+
+
+def test_a_wave_that_is_no_other_computation_s_fails():
+    """Nor one of the closed form that is not the print; another print alone is unexplained, or the grid's."""
+    row = lebeck_1979_waves._row
+    assert row(3, 1e-7, "largest_stable_waviness", 0.75, 0.70, 0.66)["verdict"] == "FAILED"
+    assert row(6, 1e-7, "driven_waviness", 3.6, 3.9)["verdict"] == "FAILED"
+    assert row(3, 1e-7, "largest_stable_waviness", 0.75, 0.66, 0.66)["verdict"] == "unexplained"
+    assert row(3, 1e-7, "largest_stable_waviness", 0.75, 0.66, 0.66, "of the grid")["verdict"] == "rounding"
 
 
 @pytest.mark.parametrize("entry", [row for row in zuk.ZUK_1972 if row.tilt], ids=lambda row: f"{row.tilt:g}")
