@@ -387,9 +387,14 @@ def _again(run, solver: str, plan: Plan, outcome, found: dict, tries: list) -> P
     if other and not hopeless:
         return _by_other(run, plan, other, why)
     best = min(measured, key=lambda before: before[2]["solver"], default=None)
-    if best and best[2]["solver"] < HELPED * found["solver"]:
+    if best and _helped(best[2], found):
         return _best_again(best, why)
     return None
+
+
+def _helped(found: dict, before: dict) -> bool:
+    """Whether a certificate is clearly better than another: of errors of the motion's own size neither is."""
+    return min(found["solver"], WHOLE) < HELPED * min(before["solver"], WHOLE)
 
 
 def _other_method(run, solver: str, plan: Plan, tries: list) -> str | None:
@@ -439,7 +444,7 @@ def judgement(found: dict, outcome, tries: list):
     if found["solver"] is None or found["solver"] <= found["asked"]:
         return found, outcome
     before = tries[-1][2] if tries else None
-    if before and found["horizon"] and before["horizon"] and found["solver"] > HELPED * before["solver"]:
+    if before and found["horizon"] and before["horizon"] and not _helped(found, before):
         said = (
             f"{found['said'].split('; NOT met')[0]}; within it up to the horizon of predictability, "
             f"{found['horizon']:.4g} s: later the run stands for its statistics only"

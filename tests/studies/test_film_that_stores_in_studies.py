@@ -99,11 +99,21 @@ def test_transmissibility_is_harmonic_balance_alone():
     assert abs(fast / other - 1) > 0.05
 
 
-def test_orbits_are_refused_or_run_in_time():
+def test_the_onset_is_run_in_time():
+    """Without orbits; a slower ramp, held at its end, touches there and not below."""
     scenario = reference("fms", "run.duration=5 ms")
     point = {"key": "rotor.runout", "margin": 1e-3, "tolerance": 1e-6, "most": 1e3, "set": {}, "floor": False}
     row = contact_onset.onset(scenario, point)
-    assert "failed" in row and "nonlinear" not in row and "path" not in row and row["formula"] > 0
+    assert "path" not in row and "multiplier" not in row and row["formula"] > 0
+    assert row["nonlinear"] == row["ramps"][-1] == pytest.approx(row["ramps"][0], rel=0.01)
+
+    def held(value):
+        ramp = {"time": [0.0, 0.06], "value": [0.0, value]}
+        values = {"rotor.runout": ramp, "run.duration": 0.09, "run.start": "steady", "film.floor": point["margin"]}
+        return simulate_in_memory(with_values(scenario, values))
+
+    assert held(0.95 * row["nonlinear"])["status"] == "ok"
+    assert held(1.02 * row["nonlinear"])["status"] == "collapsed"
 
 
 def test_runup_is_planned_by_the_modes_at_speed():

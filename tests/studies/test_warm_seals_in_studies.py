@@ -11,6 +11,7 @@ from sealdyn import Scenario
 from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.warm_state import at_work, warming
 from sealdyn.scene.liquid import in_numbers
+from sealdyn.studies.contact_onset import SETTLED
 
 SPEED = 308.923278
 SMOOTH = {"film.coning": 4e-4, "run.turns": 2}
@@ -64,6 +65,11 @@ def numbers(found, name=""):
     return {name: float(found)} if isinstance(found, int | float) and not isinstance(found, bool) else {}
 
 
+def within(key, largest):
+    """How far apart a number may be: a rise is a small difference of means, which settle so well only."""
+    return SETTLED if ".rise." in key else 1e-4 * largest[key.rstrip("0123456789.")] + 1e-20
+
+
 @pytest.mark.parametrize(("changes", "settings"), AT_ONE_SPEED.values(), ids=AT_ONE_SPEED)
 def test_at_one_speed_it_is_the_seal_with_the_warm_numbers(changes, settings, request):
     name, scenario = request.node.callspec.id.split(" ")[0], warm_seal(changes)
@@ -76,7 +82,7 @@ def test_at_one_speed_it_is_the_seal_with_the_warm_numbers(changes, settings, re
     apart = {
         key: (found[key], value)
         for key, value in expected.items()
-        if not (abs(found[key] - value) <= 1e-4 * largest[key.rstrip("0123456789.")] + 1e-20 or math.isnan(value))
+        if not (abs(found[key] - value) <= within(key, largest) or math.isnan(value))
     }
     assert not apart
 

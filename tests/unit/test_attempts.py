@@ -9,7 +9,7 @@ from hard_families import one_of
 from patterned_faces import scenario
 from scenes import fms, started
 
-from sealdyn.simulation.certificate import next_plan
+from sealdyn.simulation.certificate import judgement, next_plan
 from sealdyn.simulation.selection import Plan, Start
 from sealdyn.simulation.simulate import simulate
 from sealdyn.solvers.contract import Cause, Counts, SolverFailure, Status
@@ -101,6 +101,22 @@ def test_a_run_that_misses_energy_is_done_again_sharper():
         tries.append((one, one.tolerance or 1e-7, certificate(error)))
         one = found
     assert 1 <= len(tries) < 4
+
+
+@pytest.mark.parametrize(("before", "now", "status"), [
+    (25.0, 1.2, Status.OK), (1.2, 25.0, Status.OK), (0.05, 0.04, Status.OK), (0.05, 0.01, Status.INACCURATE),
+    (25.0, 0.01, Status.INACCURATE),
+])  # fmt: skip
+def test_errors_as_large_as_the_motion_are_alike(before, now, status):
+    """Whether sharper tries help is not seen from their size: chaos has a horizon and is no failure."""
+    tries = [(plan("adams", None, ""), 1e-7, certificate(before) | {"horizon": 0.01})]
+    found = certificate(now) | {"horizon": 0.02, "said": "said"}
+    outcome = Outcome(Status.OK, Cause.DONE, "", Counts(), 1.0, 0, 0.03, np.zeros(1), 1e-10)
+    outcome = replace(outcome, energy_residual=0.0)
+    judged, ended = judgement(found, outcome, tries)
+    assert ended.status == status and ("horizon of predictability" in judged["said"]) == (status == Status.OK)
+    if min(before, now) > 1.0:
+        assert following("adams", plan("adams", 1e-13, ""), 11.7, tries, steps=10) is None
 
 
 @pytest.mark.parametrize("seed,number", [(3001, 9), (4001, 68)])
