@@ -61,6 +61,7 @@ QUANTITIES = {
     "film_thickness": Quantity("m", "film thickness", "um", 1e6, "clearance"),
     "largest_gap": Quantity("m", "largest gap", "um", 1e6, "clearance"),
     "depth": Quantity("m", "depth"),
+    "travel": Quantity("m", "travel", "um", 1e6),
     "radius": Quantity("m", "radius", "mm", 1e3),
     "misalignment": Quantity("rad", "relative misalignment", scale="tilt"),
     "tilt": Quantity("rad", "tilt", scale="tilt"),

@@ -84,7 +84,7 @@ class PeriodMap:
         """The unknowns (n,) one period later.  Raises SceneError for a ring that sticks, SolverFailure."""
         run = self.one_period
         if run.stick_slip:
-            key = f"{RING_NAMES[run.model.unknowns.coulomb_rings[0]]}.secondary_seal.law"
+            key = f"{RING_NAMES[run.stick_slip.rings[0]]}.secondary_seal.law"
             raise SceneError(key, "a ring that sticks", 'law = "regularised" for exponents')
         y = np.zeros(run.model.unknowns.size)
         y[: self.size] = x

@@ -302,25 +302,23 @@ def followability(model: Model) -> dict | None:
         z += runout.amplitude * np.cos(angle)
         rate -= runout.amplitude * w * np.sin(angle)
         acceleration -= runout.amplitude * w * w * np.cos(angle)
-    share, moment = np.where(rate <= 0, 1.0, -1.0), np.zeros_like(phi)
+    drag, moment = np.where(rate <= 0, friction, -friction), np.zeros_like(phi)
     if tilt:
         turned = tilt * np.exp(1j * (phi + rotor.runout_phase))
         moment = _tilting(ring, speed, turned, constant_and_slope(ring.misalignment, model.start)[0])
         if ring.secondary_seal and speed:
-            seal = ring.secondary_seal
-            along = np.clip(-rate / (seal.radius * abs(speed) * tilt), -1.0, 1.0)
-            share = 2.0 / math.pi * np.arcsin(along)
-            moment = (
-                moment + seal.breakaway()[1] * np.sqrt(1.0 - along**2) * 1j * math.copysign(1.0, speed) * turned / tilt
-            )
+            drag, across = np.zeros_like(phi), 1j * math.copysign(1.0, speed) * turned / tilt
+            for one in ring.secondary_seal.circles():
+                along = np.clip(-rate / (one.radius * abs(speed) * tilt), -1.0, 1.0)
+                drag += 2.0 / math.pi * one.friction * np.arcsin(along)
+                moment = moment + 2.0 / math.pi * one.friction * one.radius * np.sqrt(1.0 - along**2) * across
         moment = np.abs(moment)
     inner, outer = scene.film.inner_radius, scene.film.outer_radius
     kern = (inner**2 + outer**2) / (4.0 * outer)
     pull = -ring.mass * acceleration - ring.support.axial_stiffness * z
     # A ring that has parted, and sticks, takes all of the friction to close again.
     needed, sure = (
-        max(float(np.max(pull + share * friction + moment / arm)), friction if tilt else -math.inf)
-        for arm in (outer, kern)
+        max(float(np.max(pull + drag + moment / arm)), friction if tilt else -math.inf) for arm in (outer, kern)
     )
     inertia, tilting = float(np.max(ring.mass * np.abs(acceleration))), float(np.max(moment)) / outer
     holds, together = spring > needed, spring > sure

@@ -254,7 +254,7 @@ class ForcedWave:
             speeds.add(self.turning(self.model.f, self.segment.gap_state(0.0, np.zeros(self.segment.size))))
         elif face_orders(scene) or uneven_supports(scene):
             one = False
-        if not one or len(speeds) > 1 or unknowns.massless or unknowns.coulomb_rings:
+        if not one or len(speeds) > 1 or unknowns.massless or unknowns.coulomb_rings or unknowns.elastic_rings:
             raise NotOneSpeed("the forcing does not turn at one speed alone")
         self.speed = speeds.pop() if speeds else 0.0
         self.wave = RotatingWave(self.model)

@@ -10,8 +10,9 @@ both rings (k = stator, rotor; W_k the spin of the carrier; sg = +1 stator, -1 r
 dK of a support with two tilt stiffnesses, whose axes, at `a`, turn with the carrier (phi_k); M_mass the moment of a
 centre of mass off the axis, of unbalance and weight.
 **Valid** small tilts (1e-4 rad: exact to 1e-8); a changing speed drops -i J W' gamma.
-Contact of the faces adds to F_film and M_film; friction of a secondary seal (dynamics/secondary_seal.py) acts on its
-ring, and a ring that sticks follows its carrier: gamma' = gamma_c' + i W (gamma - gamma_c).
+Contact of the faces adds to F_film and M_film; friction of a secondary seal (dynamics/secondary_seal.py, of one that
+gives dynamics/elastic_seal.py) acts on its ring, and a ring that sticks rigidly follows its carrier: gamma' = gamma_c'
++ i W (gamma - gamma_c).
 
 Unknowns `y`: displacements, then their rates (a massless ring has none), those of the film if it has any, with contact
 or a secondary seal the impulse of contact, then the works and the sum of absolute works.  Parameter block `p`: both
@@ -81,23 +82,26 @@ from .imposed_motion import (
 # seal compile it.
 FLOATS, MASS, INERTIA, POLAR, AXIAL_K, AXIAL_D, TILT_K, TILT_D, AT_Z, AT_TILT, AT_Z_RATE, AT_TILT_RATE = range(12)
 SEAL_LINE, SEAL_RADIUS, SEAL_BAND, SEAL_SMOOTH, STUCK, ONSET, SEAL_KERNEL = 12, 13, 14, 15, 16, 17, 20
-# Half the difference of two tilt stiffnesses, and the angle of the first one's axis.
-UNEVEN_K, AXIS = 21, 22
-RING = 23
+# Half the difference of two tilt stiffnesses, and the angle of the first one's axis; where in `p` the elements of a
+# secondary seal that gives begin (elastic_seal.py), 0 without one.
+UNEVEN_K, AXIS, SEAL_AT = 21, 22, 23
+RING = 24
 WORKS_AT = 2 * RING
 EXTENDED = WORKS_AT + 1
 LEG_AT = WORKS_AT + 2
 
 # Scratch `w`: imposed state of both rings, their own state, the net force and moments on each; then per ring the
 # friction of its secondary seal, its sliding speed, how far what it must hold lies outside what it can, and the
-# acceleration that follows the carrier; and the cosine and sine of twice the angle of an uneven support.
+# acceleration that follows the carrier; the cosine and sine of twice the angle of an uneven support, and those of the
+# carrier's own angle where a secondary seal gives.
 OWN_STATE = 2 * PER_RING
 NET = OWN_STATE + 2 * 6
 SEALS = NET + 2 * 3
 SEAL_SPEED, SEAL_EXCESS, FOLLOWING = 3, 4, 5
 PER_SEAL = 8
 AXES = SEALS + 2 * PER_SEAL
-SCRATCH = AXES + 2 * 2
+TURN = AXES + 2 * 2
+SCRATCH = TURN + 2 * 2
 
 # The works, in the order of `y`; the last two only with contact or a secondary seal.
 WORKS = ("support_damper", "film", "closing", "carrier", "gyroscopic", "contact", "secondary_seal")
@@ -147,6 +151,9 @@ def kinematics(tau, y, yp, p, w, s):
         if p[k * RING + UNEVEN_K] != 0.0:
             twice = 2.0 * ((s[STATOR_ANGLE] if k == 0 else s[ROTOR_ANGLE]) + p[k * RING + AXIS])
             w[AXES + 2 * k], w[AXES + 2 * k + 1] = math.cos(twice), math.sin(twice)
+        if p[k * RING + SEAL_AT] != 0.0:
+            angle = s[STATOR_ANGLE] if k == 0 else s[ROTOR_ANGLE]
+            w[TURN + 2 * k], w[TURN + 2 * k + 1] = math.cos(angle), math.sin(angle)
 
 
 @inner_kernel()

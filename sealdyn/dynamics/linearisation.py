@@ -8,7 +8,7 @@ from ..faces.film_thickness import h_min
 from ..faces.geometry import COLLAPSE, DZ, FORCE, GX, GY
 from ..scene.film import follows_speed
 from ..scene.patterns import grooves_of, waves_of
-from ..scene.rings import ROTOR, STATOR
+from ..scene.rings import ROTOR, STATOR, stuck_support
 from ..scene.scene import SceneError
 from .equilibrium import axial_shift
 from .imposed_motion import AXIAL, FIXED_AXIS, MOMENT, OWN, ROW, TURNING, UNBALANCE
@@ -47,7 +47,7 @@ def linear_scene(model, interval, speed: float | None = None, shift: float | Non
     interface, spin, film, rest = model.interface, 0.5 * (w_r + w_s), None, None
     rings = []
     for k, ring in enumerate((model.scene.stator, model.scene.rotor)):
-        support = ring.support
+        support = stuck_support(ring)
         tilt_k, tilt_d = support.tilt() if support else (0.0, 0.0)
         rings.append(
             RingNumbers(

@@ -68,9 +68,11 @@ class Model:
         if made is not None:
             was, left = 1e6 * made, 1e6 * scene.stator.waviness[0].amplitude
             self.unknowns.reasons.append(f"elastic ring: {left:.4g} um of its {was:.4g} um of waves are left at rest")
-        if self.unknowns.film_unknowns and self.unknowns.coulomb_rings:
-            # What a stuck ring holds is looked for between steps, from the motion of the rings alone.
-            key = f"{RING_NAMES[self.unknowns.coulomb_rings[0]]}.secondary_seal.law"
+        sticking = [*self.unknowns.coulomb_rings, *self.unknowns.elastic_rings]
+        if self.unknowns.film_unknowns and sticking:
+            # What a stuck ring holds is looked for between steps, from the motion of the rings alone; and each place
+            # of a seal that gives would start the film anew.
+            key = f"{RING_NAMES[sticking[0]]}.secondary_seal.law"
             raise SceneError(key, "sticking beside a film with unknowns of its own", '"regularised"')
         self._shifts, self._linear_scenes, self._still_films = {}, {}, {}
         self.algebraic = self.unknowns.algebraic(self.film_matrices()[1]) if self.unknowns.has_residual_form else []
@@ -95,7 +97,7 @@ class Model:
 
     def _set_bands(self):
         """Sliding speeds (m/s) below which friction fades: the user's, or a part of the onset's (stick_slip.py)."""
-        for k in self.unknowns.seals:
+        for k in (k for k in self.unknowns.seals if k not in self.unknowns.elastic_rings):
             coulomb = k in self.unknowns.coulomb_rings
             band = FADE * ONSET_SPEED * self.capture_speed if coulomb else self.unknowns.seal(k).width
             self.unknowns.ring_block[equations.RING * k + equations.SEAL_BAND] = band

@@ -12,6 +12,7 @@ from ..faces.waviness import highest_orders
 from ..scene.rings import STATOR
 from ..solvers.contract import SolverFailure
 from . import equations, linearisation
+from .elastic_seal import elements_block
 from .extrema import longest_scan, scan_pace
 from .imposed_motion import (
     CONING_PER_SPEED_SQUARED,
@@ -49,7 +50,7 @@ class Segment:
     (k, SWEEP_ROW) of the housing, `sampled` {ring: what moves its carrier by samples}, `imposed_pace` (rad/s) the
     fastest of them, `pace` that of the scan;
     `index` among the segments of a run, `last` of them; `stuck` {ring: True, False, or the velocity of its onset (3,)
-    in m/s and rad/s}.
+    in m/s and rad/s}, of a ring whose seal gives where its elements rest.
     """
 
     def __init__(self, model, interval: Interval, index: int = 0, last: bool = True, stuck=None):
@@ -61,7 +62,7 @@ class Segment:
         self.has_residual_form, self.lacks_inertia = unknowns.has_residual_form, unknowns.lacks_inertia
         self.algebraic, self.film = model.algebraic, unknowns.film
         self.reference_rate, self.shortest_period = model.reference_rate, model.shortest_period
-        self.may_change = bool(unknowns.coulomb_rings)
+        self.may_change = bool(unknowns.coulomb_rings or unknowns.elastic_rings)
         self.sweeps = sweeps_of_segment(model.scene, interval)
         self.p, self.rows = self._parameters()
         self.sampled = motions(model.scene)
@@ -84,8 +85,12 @@ class Segment:
         coned = [film.coning_per_speed_squared]
         head = np.array([x for pair in pairs for x in pair] + [*coned, *angles, len(rows)])
         p = np.concatenate([self.model.unknowns.ring_block, imposed_block(head, rows, self.sweeps, scene, interval)])
-        for k, held in self.stuck.items():
-            at = equations.RING * k
+        for k in self.model.unknowns.elastic_rings:
+            block = elements_block(self.model.unknowns.seal(k), self.model.unknowns.with_tilt, self.stuck.get(k))
+            p[equations.RING * k + equations.SEAL_AT] = len(p)
+            p = np.concatenate([p, block])
+        for k in (k for k in self.stuck if k in self.model.unknowns.coulomb_rings):
+            at, held = equations.RING * k, self.stuck[k]
             p[at + equations.STUCK] = held is True
             p[at + equations.ONSET : at + equations.ONSET + 3] = 0.0 if isinstance(held, bool) else held
         return p, rows

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cache, cached_property, partial
 
 import numpy as np
 
@@ -213,10 +213,16 @@ def _table(floats, orders, touching, coned, seals):
     table += CONED if coned else ()
     for k in seals:
         table += _of_ring(RING_NAMES[k], SEAL, equations.SEALS + equations.PER_SEAL * k)
-        slot, words = equations.RING * k + equations.STUCK, f"1 while the {RING_NAMES[k]} sticks on its secondary seal"
-        stuck = lambda at, slot=slot: np.full(len(at.taus), at.segment.p[slot])  # noqa: E731
-        table.append(Signal(f"{RING_NAMES[k]}_seal_stuck", "1", words, stuck))
+        words = f"1 while the {RING_NAMES[k]} sticks on its secondary seal, or the share of its friction that does"
+        table.append(Signal(f"{RING_NAMES[k]}_seal_stuck", "1", words, partial(_stuck, k)))
     return (*table, *SHAFT_AND_FILM)
+
+
+def _stuck(k, at):
+    ring = at.segment.p[equations.RING * k : equations.RING * (k + 1)]
+    if ring[equations.SEAL_AT]:
+        return 1.0 - at.scratch[:, equations.SEALS + equations.PER_SEAL * k + equations.SEAL_EXCESS]
+    return np.full(len(at.taus), ring[equations.STUCK])
 
 
 def _of_ring(ring, parts, first):

@@ -11,6 +11,7 @@ from ..scene.rings import RING_NAMES, ROTOR, STATOR
 from ..scene.sweep import largest_amplitude, tilts
 from ..scene.variants import turning_supports
 from . import equations
+from .elastic_seal import POINTS, elastic_friction
 from .imposed_motion import AXIAL, MOMENT, UNBALANCE, fluid_conditions, harmonics_of_segment
 from .intervals import largest_value
 from .native import SEAL_TYPE, Value
@@ -31,7 +32,8 @@ class Unknowns:
     -1 for those of which `lacks_inertia` (n,) is true; `n_mechanical` displacements and rates, `size` of y;
     `film_unknowns` what the film owns (films/_contract.py), None of an algebraic one; `has_residual_form` whether they
     obey a residual only, since a ring is massless or the film has unknowns; `ring_block` the constant part of the
-    parameters; `floats` per ring, `seals` the rings with a secondary seal, `with_axial`, `with_tilt`, `linear`,
+    parameters; `floats` per ring, `seals` the rings with a secondary seal, of
+    which those in `coulomb_rings` stick rigidly and those in `elastic_rings` give, `with_axial`, `with_tilt`, `linear`,
     `constant` (no table anywhere), `extended` (contact or a secondary seal), `faces_tilt` (aligned faces press with a
     moment), `reasons`.
     """
@@ -41,7 +43,9 @@ class Unknowns:
         self.seals = [
             k for k, ring in ((STATOR, scene.stator), (ROTOR, scene.rotor)) if ring.support and ring.secondary_seal
         ]
-        self.coulomb_rings = [k for k in self.seals if self.seal(k).law == "coulomb"]
+        self.elastic_rings = [k for k in self.seals if self.seal(k).stiffness is not None]
+        stick = [k for k in self.seals if self.seal(k).law == "coulomb"]
+        self.coulomb_rings = [k for k in stick if k not in self.elastic_rings]
         self.extended = bool(scene.contact or self.seals)
         self.turning_supports = turning_supports(scene)
         # Contact, friction and supports that change as they turn couple what a linear film keeps apart.
@@ -76,6 +80,8 @@ class Unknowns:
             self.reasons.append("wavy faces: the gap and leakage have the waves, the film's forces are as given")
         for name in self.turning_supports:
             self.reasons.append(f"{name}: two tilt stiffnesses that turn, so that the tilts are driven twice a turn")
+        if self.elastic_rings and self.with_tilt:
+            self.reasons.append(f"secondary seal that gives: taken at {POINTS} places around it")
         if self.massless:
             self.reasons.append("massless ring: no rates among its unknowns, first order in time (IDA)")
         if film_unknowns:
@@ -131,7 +137,8 @@ class Unknowns:
             if seal:
                 block[equations.SEAL_LINE], block[equations.SEAL_RADIUS] = seal.line(), seal.radius
                 block[equations.SEAL_SMOOTH] = seal.law == "regularised"
-                block[equations.SEAL_KERNEL] = Value(friction_on_ring, SEAL_TYPE).address
+                friction = friction_on_ring if k not in self.elastic_rings else elastic_friction
+                block[equations.SEAL_KERNEL] = Value(friction, SEAL_TYPE).address
             block[equations.FLOATS : equations.AXIAL_K] = 1.0, ring.mass, ring.transverse_inertia, ring.polar_inertia
             block[equations.AXIAL_K : equations.AT_Z] = support.axial_stiffness, support.axial_damping, *support.tilt()
             if self.with_axial:

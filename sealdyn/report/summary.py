@@ -264,6 +264,9 @@ def _seal_lines(seals) -> Iterator[Line]:
         yield Line("o-ring", [(f"{name}, {seal['law']}", None, ""),
                               ("breaks away at", seal["breakaway_force"], "force"),
                               ("or", seal["breakaway_moment"], "moment")])  # fmt: skip
+        if "gives" in seal:
+            yield Line("", [("gives before it slides", seal["axial_stiffness"], "axial_stiffness"),
+                            ("the first of it", seal["gives"], "travel")])  # fmt: skip
     if seals["sticks"] is not None:
         held = ", ".join(seals["stuck_at_end"])
         yield Line("", [("stuck, times", seals["sticks"], "1"), ("slipped, times", seals["slips"], "1"),

@@ -11,8 +11,9 @@ from .film import aligned_gaps, coned, follows_speed, pads_errors, profile_error
 from .gas import GASES, gas_of
 from .liquid import heat_errors, liquid_errors
 from .patterns import grooves_errors, grooves_of, waves_of, waviness_errors
-from .rings import body_errors, elastic_errors, secondary_seal_errors
+from .rings import RING_NAMES, body_errors, elastic_errors
 from .scene import SceneError
+from .secondary_seal import secondary_seal_errors
 from .sweep import sweep_errors
 
 # Of keys that may not step, if not rad.
@@ -35,6 +36,7 @@ def scene_errors(scene, run) -> list[SceneError]:
     bad += _broken(_closing, scene)
     for name, ring in (("stator", scene.stator), ("rotor", scene.rotor)):
         bad += _broken(_ring, name, ring) + _broken(check_no_step, name, ring)
+    bad += _broken(_seals_alike, scene)
     if scene.contact:
         bad += [SceneError(f"contact.{key}", *words) for key, *words in contact_errors(scene.contact)]
     if not (scene.stator.support or scene.rotor.support):
@@ -274,6 +276,15 @@ def _secondary_seal(name: str, ring) -> None:
         raise SceneError(f"{key}.{part}", found, expected)
     if ring.support and (ring.mass == 0 or ring.transverse_inertia == 0):
         raise SceneError(key, "a ring without mass or inertia", "mass and transverse_inertia > 0 to stick and slip")
+
+
+def _seals_alike(scene) -> None:
+    """Rings that stick rigidly change their equations in another way than those whose seal gives."""
+    seals = {name: ring.secondary_seal for name in RING_NAMES if (ring := getattr(scene, name)).support}
+    gives = {name: seal.stiffness is not None for name, seal in seals.items() if seal and seal.law == "coulomb"}
+    if len(set(gives.values())) == 2:
+        key = next(f"{name}.secondary_seal.stiffness" for name, given in gives.items() if not given)
+        raise SceneError(key, "none, while the seal of the other ring gives", "both seals to give, or none")
 
 
 def _vibrations(housing) -> None:

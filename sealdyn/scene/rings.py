@@ -1,5 +1,5 @@
 """A seal ring on its support: what a scenario says of it, and the numbers its equation of motion needs; its body from a
-drawing, a ring that bends, and the friction of its O-ring."""
+drawing, a ring that bends."""
 
 import math
 from dataclasses import dataclass, field, replace
@@ -11,11 +11,9 @@ from ..units import (
     Damping,
     Density,
     Displacement,
-    Force,
     Height,
     Inertia,
     Length,
-    LineForce,
     Mass,
     OneOrListed,
     Quantity,
@@ -29,11 +27,11 @@ from ..units import (
     TiltStiffness,
     Usual,
     Varying,
-    Velocity,
 )
 from . import Strict
 from .liquid import ThermalConductivity
 from .patterns import Grooves, Waviness
+from .secondary_seal import SecondarySeal
 
 Expansion = Annotated[float, Quantity("thermal expansion", "1/K", '"4.5e-6 1/K"', (), 0, True,
     usual=Usual(1e-7, 1e-3, "um/(m*K)"))]  # fmt: skip
@@ -221,56 +219,6 @@ def elastic_errors(scene) -> list[tuple[str, str, str]]:
     return bad
 
 
-@dataclass(frozen=True)
-class SecondarySeal(Strict):
-    """The `[stator.secondary_seal]` or `[rotor.secondary_seal]` table: `radius` (m) of the circle, and `line_friction`
-    (F', N/m) or `friction_force` (axial breakaway force, 2 pi R F', N).  `law = "regularised"` takes the
-    force and moment of Coulomb's law times s/sqrt(s^2 + width^2), where s^2 = v^2 + (R |q|)^2 of the axial speed v and
-    the tilt rate q: it creeps where a real seal sticks."""
-
-    radius: Radius
-    """Radius of the circle on which the O-ring slides."""
-    line_friction: LineForce | None = None
-    """Friction per length of that circle; or give `friction_force`."""
-    friction_force: Force | None = None
-    """Axial breakaway force, in place of `line_friction`."""
-    law: Literal["coulomb", "regularised"] = "coulomb"
-    """Real sticking, or friction that fades with the sliding speed and creeps."""
-    width: Velocity | None = None
-    """Sliding speed below which friction fades, for "regularised"."""
-
-    def line(self) -> float:
-        """Friction per length F' (N/m)."""
-        if self.line_friction is not None:
-            return self.line_friction
-        return self.friction_force / (2 * math.pi * self.radius)
-
-    def breakaway(self) -> tuple[float, float]:
-        """Axial force `2 pi R F'` (N) and moment `4 R^2 F'` (N m) that make a stuck ring slide, each alone.
-
-        **Source** Ludwig & Allen, NASA TN D-8102 (1976); circle integral of -F' sign(v).
-        """
-        return 2 * math.pi * self.radius * self.line(), 4 * self.radius**2 * self.line()
-
-
-def secondary_seal_errors(seal) -> list[tuple[str, str, str]]:
-    """What is wrong with a `SecondarySeal`: (key, found, expected)."""
-    out = []
-    if seal.radius <= 0:
-        out.append(("radius", f"{seal.radius:g} m", "a length > 0"))
-    given = [x is not None for x in (seal.line_friction, seal.friction_force)]
-    if sum(given) != 1:
-        found = "both" if all(given) else "neither"
-        out.append(("line_friction", found, "exactly one of line_friction and friction_force"))
-    elif (seal.line_friction if given[0] else seal.friction_force) < 0:
-        out.append(("friction_force", "a negative friction", "a friction >= 0"))
-    if seal.law == "regularised" and not (seal.width and seal.width > 0):
-        out.append(("width", "nothing", "a sliding speed > 0, over which the regularised law turns"))
-    if seal.law == "coulomb" and seal.width is not None:
-        out.append(("width", f"{seal.width:g} m/s", 'no width, or law = "regularised"'))
-    return out
-
-
 STATOR, ROTOR = 0, 1
 RING_NAMES = ("stator", "rotor")
 
@@ -313,6 +261,21 @@ class Support(Strict):
         conj(e)) for a tilt e = e_x + i e_y off rest; 0 of a support that is the same in all directions."""
         both = self.tilt_stiffness
         return 0.5 * (both[0] - both[-1]) if isinstance(both, tuple) and both else 0.0
+
+    def beside(self, axial: float, tilt: float) -> "Support":
+        """The support with springs beside its own, of `axial` (N/m) and `tilt` stiffness (N m/rad)."""
+        own, (_, damping) = self.tilt_stiffness, self.tilt()
+        both = tuple(k + tilt for k in own) if isinstance(own, tuple) else self.tilt()[0] + tilt
+        stiffness = {"axial_stiffness": self.axial_stiffness + axial, "tilt_stiffness": both}
+        return replace(self, radius=None, tilt_damping=damping, **stiffness)
+
+
+def stuck_support(ring) -> Support | None:
+    """The support of a Stator or Rotor as small motion meets it: what gives of its secondary seal is a spring."""
+    seal = ring.secondary_seal
+    if ring.support is None or seal is None or seal.stiffness is None:
+        return ring.support
+    return ring.support.beside(*seal.springs())
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from typing import Any
 
 from ..numerics.piecewise_linear import PiecewiseLinear, points
 from .excitation import Housing, Shaft
-from .rings import INERTIAL, RING_NAMES, Rotor, Stator, with_inertia
+from .rings import INERTIAL, RING_NAMES, Rotor, Stator, stuck_support, with_inertia
 from .scene import Closing, Initial, RingStart, Scene, SceneError
 
 # A key that is given takes its alternatives in the same table away.
@@ -105,6 +105,16 @@ def tables_of(scene: Scene, what) -> list[str]:
 def seals_that_stick(scene: Scene) -> list[str]:
     """Dotted names of the secondary seals on which floating rings of the scene slide."""
     return [name for name in tables_of(scene, ["secondary-seal"]) if part(scene, name.split(".")[0]).support]
+
+
+def with_springs_for_seals(scene: Scene) -> tuple[Scene, list[str]]:
+    """The scene as small motion meets it, where secondary seals that give are springs beside the supports; dotted names
+    of these seals."""
+    names = [key for key in seals_that_stick(scene) if part(scene, key).stiffness is not None]
+    for key in names:
+        support = key.replace("secondary_seal", "support")
+        scene = with_values(scene, {support: stuck_support(part(scene, key.split(".")[0])), key: None})
+    return scene, names
 
 
 def uneven_supports(scene: Scene) -> list[str]:

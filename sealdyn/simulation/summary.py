@@ -263,8 +263,11 @@ def _secondary_seal(run):
     for k in unknowns.seals:
         force, moment = unknowns.seal(k).breakaway()
         rings[RING_NAMES[k]] = {"breakaway_force": force, "breakaway_moment": moment, "law": unknowns.seal(k).law}
+        if k in unknowns.elastic_rings:
+            stiffness, reach = unknowns.seal(k).springs()[0], unknowns.seal(k).reach()
+            rings[RING_NAMES[k]] |= {"axial_stiffness": stiffness, "gives": reach}
     found = run.stick_slip
-    if found is None:
+    if found is None or unknowns.elastic_rings:
         return {"rings": rings, "sticks": None, "slips": None, "energy_dropped": None, "stuck_at_end": None}
     return {
         "rings": rings,

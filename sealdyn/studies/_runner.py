@@ -158,7 +158,11 @@ def run_study(
     _refuse_seal(name, info, scenario.scene)
     # What can be left out, a face seal has.
     studied, left_out = (scenario, []) if _is_radial(scenario.scene) else without(scenario, leave_out)
+    springs = []
     if not _is_radial(scenario.scene):
+        if "secondary-seal" in info.refuses:
+            scene, springs = variants.with_springs_for_seals(studied.scene)
+            studied = replace(studied, scene=scene)
         _refuse(name, studied.scene, info.refuses)
     settings = study_settings(scenario, name, module.Settings, flags or {})
     out = archive_of(name, scenario, out)
@@ -182,6 +186,10 @@ def run_study(
             notes.append(info.warm)
         if info.aligned and not _is_radial(studied.scene) and (askew := _moment(studied.scene)):
             notes.append(f"The numbers are of aligned faces, which do not stay so: {askew}.")
+        for key in springs:
+            seal = variants.part(scenario.scene, key)
+            stiffness, reach = in_words("axial_stiffness", seal.springs()[0]), in_words("travel", seal.reach())
+            notes.append(f"[{key}] is a spring of {stiffness}, as in small motion: from {reach} on it slides.")
         if left_out:
             notes.append(f"Left out as asked: {', '.join(f'[{table}]' for table in left_out)}.")
         panels = plain(answer.panels)
