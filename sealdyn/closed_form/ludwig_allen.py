@@ -164,6 +164,13 @@ def eigenvalues(force_ratio: float, mean_spin: float) -> np.ndarray:
 # studies/sealing_number/released.py.
 # **Valid** their assumptions; ring that slides on its secondary seal all around, no support damping,
 # seat tilted by more than h1/R.  `guide` is K_s gamma / (R F_s), `group` mu U dR^3 / F_s in m^2.
+#
+# Where the seat turns and the ring stands (FMS) the ring nods at the shaft's speed w, and its inertia acts at right
+# angles to the friction: guide = (I w^2 - K_s) gamma / (R F_s), of either sign, and
+#
+#     m^2 = (4 / (pi q))^2 + guide^2
+#
+# so that inertia carries a film as friction does, from no speed (m = 4 / (pi q)) to no friction (m = guide).
 
 # Moment over R F_s that a film carries: least (parallel faces), most (the whole load at the arm R).
 LEAST_MOMENT, MOST_MOMENT = math.pi / 4, 1.0
@@ -196,6 +203,7 @@ def film(force_ratio: float, guide: float, group: float) -> tuple[float, float]:
 def film_range(guide: float = 0.0) -> tuple[float, float]:
     """Force ratios F_s / F_d between which the released ring has a film: it hangs up below and straightens above (inf:
     never); scalar `guide`.  **Source**, **Valid** as the module."""
+    guide = abs(guide)
     least = math.inf if guide >= MOST_MOMENT else 4 / math.pi / math.sqrt(1 - guide**2)
     most = math.inf if guide >= LEAST_MOMENT else closed.LEAST_FORCE_RATIO / math.sqrt(1 - (guide / LEAST_MOMENT) ** 2)
     return least, most

@@ -13,8 +13,7 @@ from ...answers import Answer, Axis, Level, Panel, Series, Table
 from ...closed_form import ludwig_allen as closed
 from ...dynamics.model import Model
 from ...dynamics.warm_state import at_work
-from ...numerics.piecewise_linear import initially
-from ...scene.rings import INERTIAL
+from ...scene.rings import INERTIAL, STATOR
 from ...status import Status
 from .. import Info
 from . import released as free
@@ -23,13 +22,15 @@ INFO = Info(
     timed=("ludwig_allen", 66),
     asks="Does friction of the secondary seal lubricate the faces?",
     # Of the rest a film is a length; of what the released ring has, three: mean, least and largest of its last turns.
-    units={"mean_film": "m", "least_film": "m", "ratio/mean_film": "1", "ratio/least_film": "1", "direction": "rad",
-           "tilt_stiffness": "N*m/rad", "*": "1"},
-    along={"map": ("guide",)} | dict.fromkeys(("line", "foreseen", "map/closed_form", "balance", "published",
-                                               "released"), ("force_ratio",)),
+    units={"speed": "rad/s", "amplitude": "m", "mean_film": "m", "least_film": "m", "ratio/mean_film": "1",
+           "ratio/least_film": "1", "direction": "rad", "tilt_stiffness": "N*m/rad", "*": "1"},
+    along={"map": ("guide",), "over_speed": ("speed",)}
+    | dict.fromkeys(("line", "foreseen", "map/closed_form", "balance", "published", "released"), ("force_ratio",)),
 )  # fmt: skip
 # Turns (radians of the shaft) a quasi-static run may take; how far above the balance it starts.
 RADIANS, ABOVE = 300.0, 1.02
+# Speeds at which films are foreseen.
+SPEEDS = 40
 RATIOS = (1.2, 1.3, 1.45, 1.6, 1.65, 1.72, 1.8, 2.0, 2.5, 3.0, 5.0, 10.0, 20.0)
 Positive, Start = Annotated[float, Field(gt=0)], Literal["closed form", "open"]
 OWN, NEEDED = "own", "as the closed form needs"
@@ -89,16 +90,20 @@ def run(scenario, settings, tools) -> Answer:
         "line": _line(max(ratios)),
         "foreseen": _foreseen_line(scene, ring, max(ratios)),
         "map": _map(max(ratios)),
+        "over_speed": _over_speed(scene, ring),
     }  # fmt: skip
     notes = ["Their film, which the scene's has to be for the answer to be theirs, is flat and planar, constant over "
              "the face, its pressure ambient where it diverges."]  # fmt: skip
+    if free.pair_of(scene).floating == STATOR:
+        notes.append("The seat turns: closed form and balance have the ring's friction alone, as theirs do; what is "
+                     "foreseen and run has the inertia of its nodding too.")  # fmt: skip
     return Answer(answer, _found(answer), _tables(answer), _panels(answer), notes)
 
 
 def own_guide(scene, ring) -> float:
-    """K_s gamma / (R F_s) of the scene's support, stretched by the seat's tilt."""
-    seat = initially(scene.stator.misalignment)
-    return scene.rotor.support.tilt()[0] * seat / (ring.mean_radius * ring.spring_force)
+    """|K_s - I w^2| gamma / (R F_s) of the scene's support and (of a ring that nods) inertia, at the seat's tilt."""
+    pair = free.pair_of(scene)
+    return abs(pair.stiffness) * pair.tilt / (ring.mean_radius * ring.spring_force)
 
 
 def _line(highest) -> dict:
@@ -129,6 +134,27 @@ def _map(highest) -> dict:
     q = np.array(_line(highest)["force_ratio"])
     return {"guide": guide.tolist(), "hang_up_below": edges[:, 0].tolist(), "straightens_above": edges[:, 1].tolist(),
             "closed_form": {"force_ratio": q.tolist(), "guide": closed.amplitude_ratio(q).tolist()}}  # fmt: skip
+
+
+def _over_speed(scene, ring) -> dict:
+    """Films to be expected with the scene's own friction over the shaft's speed, up to where the inertia of a ring that
+    nods takes all the moment that a film has (of one that turns: twice its own speed); None where there is none."""
+    pair, q, most = free.pair_of(scene), free.force_ratio_of(scene), 2.0 * ring.shaft_speed
+    inertia = (pair.ring.support.tilt()[0] - pair.stiffness) / ring.shaft_speed**2
+    own = pair.stiffness + inertia * ring.shaft_speed**2
+    arm = ring.mean_radius * ring.spring_force / pair.tilt
+    if inertia > 0.0:
+        most = ((arm + own) / inertia) ** 0.5
+    speeds, films = np.linspace(0.0, most, SPEEDS + 1)[1:], []
+    guides = (inertia * speeds**2 - own) / arm
+    for speed, guide in zip(speeds, guides, strict=True):
+        try:
+            films.append(closed.film(q, float(guide), ring.group * speed / ring.shaft_speed))
+        except ValueError:
+            films.append((None, None))
+    mean, amplitude = zip(*films, strict=True)
+    return {"speed": speeds.tolist(), "moment_ratio": closed.moment_ratio(q, guides).tolist(), "mean_film": list(mean),
+            "amplitude": list(amplitude)}  # fmt: skip
 
 
 # --- points -----------------------------------------------------------------------------------------------
@@ -162,8 +188,9 @@ def balance(scene, point: dict) -> dict:
 def release(scene, point: dict) -> dict:
     """What becomes of the released ring at one force ratio."""
     ring, q = free.ring_of(scene), point["force_ratio"]
-    heavier = {name: point["inertia"] * getattr(scene.rotor, name) for name in INERTIAL}
-    scene = replace(scene, rotor=replace(scene.rotor, **heavier))
+    floating = free.pair_of(scene).ring
+    heavier = replace(floating, **{name: point["inertia"] * getattr(floating, name) for name in INERTIAL})
+    scene = replace(scene, **{free.floating_name(scene): heavier})
     guide = None if point["support"] == OWN else closed.closed_form_guide(q)
     scene = free.started(free.with_force_ratio(scene, q, guide), point["start"])
     # Landing on the asperities may defeat a method at one accuracy and not at the next.
@@ -173,7 +200,11 @@ def release(scene, point: dict) -> dict:
             break
     row = {name: getattr(told, name) for name in ("status", "message", "mean_film", "least_film", "share", "direction",
            "whirl", "contact_share", "stuck_share", "evaluations", "energy_residual")}  # fmt: skip
-    row |= {"accuracy": accuracy, "tilt_stiffness": scene.rotor.support.tilt()[0], "guide": _guide(scene, told, ring)}
+    row |= {
+        "accuracy": accuracy,
+        "tilt_stiffness": free.pair_of(scene).ring.support.tilt()[0],
+        "guide": _guide(scene, told, ring),
+    }
     row["sealing_number"] = [h**2 / ring.group for h in told.mean_film]
     row["foreseen"], row["foreseen_said"], row["ratio"] = None, "", None
     try:
@@ -189,10 +220,10 @@ def release(scene, point: dict) -> dict:
 
 
 def _guide(scene, told, ring) -> float:
-    """What the support carried in the end, K_s gamma / (R F_s)."""
+    """What support and inertia carried in the end, |K_s - I w^2| gamma / (R F_s)."""
     relative = told.amplitude[0] / ring.mean_radius * np.exp(1j * told.direction)
-    tilt = abs(initially(scene.stator.misalignment) - relative)
-    return float(scene.rotor.support.tilt()[0] * tilt / (ring.mean_radius * ring.spring_force))
+    pair = free.pair_of(scene)
+    return float(abs(pair.stiffness) * abs(pair.tilt - relative) / (ring.mean_radius * ring.spring_force))
 
 
 # --- what is told -----------------------------------------------------------------------------------------
@@ -232,7 +263,11 @@ def _tables(numbers) -> list[Table]:
     off = [max((abs(row["static"]["mean_film"] / row["closed_form"]["mean_film"] - 1) for row in static), default=None),
            max((abs(row["ratio"]["mean_film"] - 1) for row in kept), default=None)]  # fmt: skip
     own = [numbers[name] for name in ("guide", "least_force_ratio", "least_attracting_force_ratio")]
-    return [balances, released, Table("closed form", columns, [[*own, *off]])]
+    tables = [balances, released, Table("closed form", columns, [[*own, *off]])]
+    columns = [("speed", "shaft.speed"), ("1", "moment / R F_s"), (film, "foreseen h0")]
+    rows = zip(*(numbers["over_speed"][key] for key in ("speed", "moment_ratio", "mean_film")), strict=True)
+    carried = [list(row) for row in rows if row[2] is not None]
+    return tables + ([Table("over speed", columns, carried)] if carried else [])
 
 
 def _first(value):
@@ -329,5 +364,5 @@ def _fates_panel(numbers, over) -> Panel:
     places = {"hangs up": (1.3, 0.62), "straightens": (last**0.75, 0.12), "film": (film, min(0.5 * sum(ends), 1.0))}
     x, y = zip(*places.values(), strict=True)
     series.append(Series("words", x, y, names=list(places), style="grey"))
-    moment = Axis("1", "support's tilt moment / R F_s", low=-0.02, high=1.08)
+    moment = Axis("1", "tilt moment of support and inertia / R F_s", low=-0.02, high=1.08)
     return Panel("What a released ring does (marks: run)", over, moment, series, below=True)

@@ -1,12 +1,18 @@
 """Ludwig & Allen's ring let go: three degrees of freedom, inertia, Coulomb friction around the secondary seal and both
 film moments.  Does it keep the film that their closed form gives it?
 
+Their ring turns and its seat stands (FMR).  Where the seat turns and the ring stands (FMS) the ring nods along with it,
+a tilt that turns at the shaft's speed w: its friction is the same, and its transverse inertia pulls it out, I w^2 gamma
+against the support's K gamma.  So in place of K stands K - I w^2, of either sign; the film is that of the mirror.
+**Source** derived here, from the equations of motion (dynamics/equations.py) at a tilt gamma exp(i w t).
+
 What it must come to is worked out in `closed_form.ludwig_allen`; here the ring of a scene is run in time and what
 becomes of it is named.
 """
 
 import math
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import brentq
@@ -20,7 +26,7 @@ from ...dynamics.signals import signals
 from ...numerics.piecewise_linear import initially
 from ...quantities import in_words
 from ...scene.film import coned
-from ...scene.rings import Support
+from ...scene.rings import RING_NAMES, ROTOR, STATOR, Rotor, Stator, Support
 from ...scene.scene import Initial, RingStart, Scene, SceneError
 from ...scene.variants import refuse_uneven
 from ...simulation.selection import choose_method
@@ -42,29 +48,28 @@ def film_on(scene, clearance: float | None = None) -> tuple[float, float, comple
     stretched by that tilt and by h0, and the ring tilts less than its seat until friction and support just hold the
     film.  `clearance` (m): where the support's axial spring is at rest, if known (else found from the asperities).
     **Raises** ValueError as `film`."""
-    ring, q, support = ring_of(scene), force_ratio_of(scene), scene.rotor.support
-    seat = initially(scene.stator.misalignment)
-    found = _film_under(1.0, q, support, seat, ring)
-    axial = support.axial_stiffness / ring.spring_force
+    ring, q, pair = ring_of(scene), force_ratio_of(scene), pair_of(scene)
+    found = _film_under(1.0, q, pair, ring)
+    axial = pair.ring.support.axial_stiffness / ring.spring_force
     if axial == 0.0:
         return found
     rest = Model(scene, 1e-3).clearance if clearance is None else clearance
 
     def missing(load):
         try:
-            return load - 1.0 - axial * (_film_under(load, q, support, seat, ring)[0] - rest)
+            return load - 1.0 - axial * (_film_under(load, q, pair, ring)[0] - rest)
         except ValueError:
             # Pressed so hard that it straightens.
             return load - 1.0
 
     most = 1.0 + axial * max(found[0] - rest, 0.0)
-    return _film_under(brentq(missing, 1.0, most, xtol=1e-15), q, support, seat, ring) if most > 1.0 else found
+    return _film_under(brentq(missing, 1.0, most, xtol=1e-15), q, pair, ring) if most > 1.0 else found
 
 
-def _film_under(load, q, support, seat, ring):
+def _film_under(load, q, pair, ring):
     """`film_on` with `load` times the spring force; friction and support as they are."""
-    ring, q = replace(ring, group=ring.group / load), load * q
-    stiffness = support.tilt()[0] / (ring.mean_radius * ring.spring_force)
+    ring, q, seat = replace(ring, group=ring.group / load), load * q, pair.tilt
+    stiffness = pair.stiffness / (ring.mean_radius * ring.spring_force)
 
     def seat_of(tilt):
         """Tilt of the seat, from the direction of a ring of that tilt."""
@@ -74,14 +79,16 @@ def _film_under(load, q, support, seat, ring):
         return tilt + amplitude / ring.mean_radius * turned / abs(turned)
 
     # With a stiff support only some tilts have a film; over a soft one all have, or none.
-    friction, low, high = moment_ratio(q), 0.0, seat
-    if stiffness > 0:
-        low = math.sqrt(max(LEAST_MOMENT**2 - friction**2, 0.0)) / stiffness * (1 + 1e-12)
-        high = min(math.sqrt(max(MOST_MOMENT**2 - friction**2, 0.0)) / stiffness * (1 - 1e-12), seat)
+    # Inertia, a negative one, draws the ring beyond its seat.
+    friction, low, high = moment_ratio(q), 0.0, seat if stiffness >= 0.0 else 2.0 * seat
+    if stiffness != 0.0:
+        low = math.sqrt(max(LEAST_MOMENT**2 - friction**2, 0.0)) / abs(stiffness) * (1 + 1e-12)
+        high = min(math.sqrt(max(MOST_MOMENT**2 - friction**2, 0.0)) / abs(stiffness) * (1 - 1e-12), high)
     if low < high and abs(seat_of(high)) > seat > abs(seat_of(low)):
         tilt = brentq(lambda x: abs(seat_of(x)) - seat, low, high, xtol=1e-14 * seat)
         there = seat_of(tilt)
-        return *film(q, stiffness * tilt, ring.group), tilt * there.conjugate() / abs(there)
+        at = tilt * there.conjugate() / abs(there)
+        return *film(q, stiffness * tilt, ring.group), at if pair.floating == ROTOR else at.conjugate()
     film(q, stiffness * seat, ring.group)
     raise ValueError("hang-up: the film would tilt by more than the seat")
 
@@ -89,12 +96,46 @@ def _film_under(load, q, support, seat, ring):
 # --- scenes -----------------------------------------------------------------------------------------------
 
 
+class Pair(NamedTuple):
+    """Which ring floats (`floating`, as RING_NAMES has them) and that `ring`; key, `tilt` (rad) and direction (rad, at
+    the start) of its seat, and the speed (rad/s) at which that turns; tilt `stiffness` (N m/rad) that the nodding ring
+    meets, its inertia's part off the support's."""
+
+    floating: int
+    ring: Stator | Rotor
+    key: str
+    tilt: float
+    direction: float
+    speed: float
+    stiffness: float
+
+
+def pair_of(scene) -> Pair:
+    """Ring and seat of a scene: the rotor over a stator that stands askew, or the stator over a rotor that runs out."""
+    stator, rotor = scene.stator, scene.rotor
+    if stator.support is None or rotor.support is not None:
+        stiffness = rotor.support.tilt()[0] if rotor.support else 0.0
+        tilt = initially(stator.misalignment)
+        return Pair(ROTOR, rotor, "stator.misalignment", tilt, stator.misalignment_direction, 0.0, stiffness)
+    speed = initially(scene.shaft.speed)
+    stiffness = stator.support.tilt()[0] - stator.transverse_inertia * speed**2
+    return Pair(STATOR, stator, "rotor.runout", initially(rotor.runout), rotor.runout_phase, speed, stiffness)
+
+
+def floating_name(scene) -> str:
+    """Name of the ring that floats."""
+    return RING_NAMES[pair_of(scene).floating]
+
+
 def ring_of(scene) -> quasi_static.Ring:
     """The numbers of Ludwig & Allen of a scene.  **Raises** SceneError if it is not of their kind."""
     refuse_uneven(scene)
-    f, rotor = scene.film, scene.rotor
+    f, pair, none = scene.film, pair_of(scene), "nothing"
+    name, seal = RING_NAMES[pair.floating], pair.ring.secondary_seal
+    other = RING_NAMES[1 - pair.floating]
+    turning, gives = initially(scene.stator.speed), seal is not None and seal.stiffness is not None
+    stands = pair.floating == ROTOR or not turning
     pressures = [initially(f.inner_pressure), initially(f.outer_pressure)]
-    seat, none = initially(scene.stator.misalignment), "nothing"
     floor = none if f.cavitation_pressure is None else f"{f.cavitation_pressure:g} Pa"
     slope = coned(scene).coning
     wanted = (
@@ -105,11 +146,14 @@ def ring_of(scene) -> quasi_static.Ring:
             "the inner and the outer pressure",
         ),
         ("closing.spring_force", scene.closing.spring_force is not None, none, "a spring force and a balance ratio"),
-        ("rotor.support", rotor.support is not None, none, "a flexible rotor"),
-        ("rotor.secondary_seal", rotor.secondary_seal is not None, none, "a secondary seal on the rotor"),
+        (f"{other}.support", getattr(scene, other).support is None, "two flexible rings", "one of them"),
+        (f"{name}.support", pair.ring.support is not None, none, "a flexible ring"),
+        (f"{name}.secondary_seal", seal is not None, none, "a secondary seal on the ring"),
+        (f"{name}.secondary_seal.stiffness", not gives, "one", "none: rigid until it slides"),
+        ("stator.speed", stands, f"{turning:g} rad/s", "a ring that stands, or a flexible rotor"),
         ("contact", scene.contact is not None, none, "asperities for the ring to land on"),
         ("film.coning", slope == 0.0, f"{slope:g} rad", "flat faces"),
-        ("stator.misalignment", seat > 0.0, f"{seat:g} rad", "a misaligned seat"),
+        (pair.key, pair.tilt > 0.0, f"{pair.tilt:g} rad", "a misaligned seat"),
     )
     for key, there, found, expected in wanted:
         if not there:
@@ -124,25 +168,25 @@ def ring_of(scene) -> quasi_static.Ring:
 def force_ratio_of(scene) -> float:
     """q = F_s / F_d with the friction moment of the scene's secondary seal."""
     ring = ring_of(scene)
-    return 4 * ring.mean_radius * ring.spring_force / (math.pi * scene.rotor.secondary_seal.breakaway()[1])
+    return 4 * ring.mean_radius * ring.spring_force / (math.pi * pair_of(scene).ring.secondary_seal.breakaway()[1])
 
 
 def with_force_ratio(scene, force_ratio: float, guide: float | None = None) -> Scene:
     """The scene with the friction of F_s / F_d; with `guide`, also on a pure tilt spring that gives K_s gamma = guide
     R F_s at the film (or, if there is none, where the run starts)."""
-    ring, rotor = ring_of(scene), scene.rotor
+    ring, pair = ring_of(scene), pair_of(scene)
     friction = closed.friction_moment(ring.spring_force / force_ratio, ring.mean_radius)
-    radius = rotor.secondary_seal.radius
-    seal = replace(rotor.secondary_seal, line_friction=friction / (4 * radius**2), friction_force=None)
-    support = rotor.support
+    seal, support = pair.ring.secondary_seal, pair.ring.support
+    seal = replace(seal, line_friction=friction / (4 * seal.radius**2), friction_force=None)
     if guide is not None:
-        seat = initially(scene.stator.misalignment)
+        seat = pair.tilt
         tilt = seat - _film_or_start(force_ratio, guide, ring)[1] / ring.mean_radius
         if tilt <= 0:
-            raise SceneError("stator.misalignment", f"{seat:g} rad", "more than the tilt of the film")
-        stiffness = guide * ring.mean_radius * ring.spring_force / tilt
+            raise SceneError(pair.key, f"{seat:g} rad", "more than the tilt of the film")
+        # What its inertia takes, the support gives.
+        stiffness = guide * ring.mean_radius * ring.spring_force / tilt + support.tilt()[0] - pair.stiffness
         support = Support(axial_stiffness=0.0, tilt_stiffness=stiffness)
-    return replace(scene, rotor=replace(rotor, secondary_seal=seal, support=support))
+    return replace(scene, **{RING_NAMES[pair.floating]: replace(pair.ring, secondary_seal=seal, support=support)})
 
 
 def _film_or_start(force_ratio, guide, ring):
@@ -163,8 +207,8 @@ def start_film(force_ratio: float, ring: quasi_static.Ring) -> tuple[float, floa
 def started(scene, start="closed form", factor: float = 1.0) -> Scene:
     """The scene with its start: "closed form" (ring following the seat at `factor` times that film), "open" (ring
     square to its shaft and at rest there, faces just apart), or (h0, h1) in m."""
-    ring, clearance = ring_of(scene), Model(scene, 1e-3).clearance
-    seat, direction = initially(scene.stator.misalignment), scene.stator.misalignment_direction
+    ring, pair, clearance = ring_of(scene), pair_of(scene), Model(scene, 1e-3).clearance
+    seat = pair.tilt
     if start == "open":
         # Where the tilts of the faces reach furthest.
         reach = ring.mean_radius if scene.film.tilt_radius == "mean" else scene.film.outer_radius
@@ -172,8 +216,10 @@ def started(scene, start="closed form", factor: float = 1.0) -> Scene:
     else:
         films = start_film(force_ratio_of(scene), ring) if start == "closed form" else start
         mean, tilt = factor * films[0], seat - factor * films[1] / ring.mean_radius
-    at = RingStart(z=clearance - mean, tilt_x=tilt * math.cos(direction), tilt_y=tilt * math.sin(direction))
-    return replace(scene, initial=Initial(rotor=at))
+    x, y = tilt * math.cos(pair.direction), tilt * math.sin(pair.direction)
+    z = mean - clearance if pair.floating == STATOR else clearance - mean
+    at = RingStart(z=z, tilt_x=x, tilt_y=y, tilt_x_rate=-pair.speed * y, tilt_y_rate=pair.speed * x)
+    return replace(scene, initial=Initial(**{RING_NAMES[pair.floating]: at}))
 
 
 # --- in time ----------------------------------------------------------------------------------------------
@@ -213,9 +259,12 @@ def released(scene, turns: float = 80, last: float = 4, accuracy: float = 1e-3, 
     ring = ring_of(scene)
     turn = 2 * math.pi / ring.shaft_speed
     run = RunState(Model(scene, accuracy), turns * turn)
-    start = scene.initial.rotor
-    for part, given in (("z", start.z), ("tilt_x", start.tilt_x), ("tilt_y", start.tilt_y)):
-        run.y0[run.model.unknowns.names.index(f"rotor_{part}")] = given or 0.0
+    unknowns, name = run.model.unknowns, RING_NAMES[pair_of(scene).floating]
+    start = getattr(scene.initial, name)
+    for part in ("z", "tilt_x", "tilt_y"):
+        at = unknowns.names.index(f"{name}_{part}")
+        run.y0[at] = getattr(start, part) or 0.0
+        run.y0[unknowns.rate_places[at]] = getattr(start, f"{part}_rate") or 0.0
     run.check_start()
     sink = Kept(turn / SAMPLES)
     outcome = solve(run, method or choose_method(run)[0], accuracy, sink)
@@ -236,9 +285,11 @@ class Kept(Recorder):
 
 def _told(run, ring, series, outcome, last) -> Released:
     time, h0 = series["time"], run.model.clearance + series["axial_gap_change"]
-    g = (series["relative_tilt_x"] + 1j * series["relative_tilt_y"]) * np.exp(
-        -1j * run.model.scene.stator.misalignment_direction
-    )
+    pair = pair_of(run.model.scene)
+    # The seat's tilt less the ring's, from the direction of the seat, which may turn.
+    sign = 1.0 if pair.floating == ROTOR else -1.0
+    g = sign * (series["relative_tilt_x"] + 1j * series["relative_tilt_y"])
+    g = g * np.exp(-1j * (pair.direction + pair.speed * time))
     h1 = ring.mean_radius * np.abs(g)
     end = time >= time[-1] - last * 2 * math.pi / ring.shaft_speed
     angle = np.unwrap(np.angle(g[end]))
@@ -247,7 +298,7 @@ def _told(run, ring, series, outcome, last) -> Released:
         share=float(np.mean(h1[end]) / np.mean(h0[end])), direction=float(np.angle(np.mean(g[end]))),
         whirl=float(angle[-1] - angle[0]) / (2 * math.pi * last),
         contact_share=float(np.mean(series["contact_force"][end]) / ring.spring_force),
-        stuck_share=float(np.mean(series["rotor_seal_stuck"][end])), time=time, h0=h0, h1=h1,
+        stuck_share=float(np.mean(series[f"{RING_NAMES[pair.floating]}_seal_stuck"][end])), time=time, h0=h0, h1=h1,
         evaluations=outcome.counts.rhs, energy_residual=outcome.energy_residual,
     )  # fmt: skip
     if outcome.status == Status.OK:
