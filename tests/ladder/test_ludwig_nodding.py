@@ -12,6 +12,7 @@ from test_ludwig_released import integrals, ready_scene
 from sealdyn.analysis import quasi_static
 from sealdyn.closed_form import ludwig_allen as la
 from sealdyn.scenario.reader import parse_scenario
+from sealdyn.scene.rings import AxialRunout
 from sealdyn.scene.scene import SceneError
 from sealdyn.scene.secondary_seal import SecondarySeal
 from sealdyn.scene.variants import counterpart
@@ -110,13 +111,23 @@ def test_the_study_foresees_films_over_the_speed(tmp_path):
     assert row["status"] == "film" and row["foreseen"]["mean_film"] == pytest.approx(row["mean_film"][0], rel=5e-3)
 
 
-@pytest.mark.parametrize("changes,key", [({"speed": 10.0}, "stator.speed"), ({"seal": 1e6}, "stiffness")])
+GIVES = SecondarySeal(radius=0.06, friction_force=10.0, stiffness=1e6)
+
+
+@pytest.mark.parametrize(
+    "changes,key",
+    [
+        ({"speed": 10.0}, "speed"),
+        ({"secondary_seal": GIVES}, "secondary_seal.stiffness"),
+        ({"secondary_seal": None}, "secondary_seal"),
+        ({"misalignment": 1e-5}, "misalignment"),
+    ],
+)
 def test_other_rings_are_refused(changes, key):
     scene = nodding(2.0, 0.5)
-    stator = scene.stator
-    if "seal" in changes:
-        seal = SecondarySeal(radius=0.06, friction_force=10.0, stiffness=changes.pop("seal"))
-        changes = {"secondary_seal": seal}
     with pytest.raises(SceneError) as refused:
-        free.ring_of(replace(scene, stator=replace(stator, **changes)))
-    assert refused.value.key.endswith(key)
+        free.ring_of(replace(scene, stator=replace(scene.stator, **changes)))
+    assert refused.value.key == f"stator.{key}"
+    with pytest.raises(SceneError) as refused:
+        free.ring_of(replace(scene, rotor=replace(scene.rotor, axial_runout=[AxialRunout(order=1, amplitude=1e-6)])))
+    assert refused.value.key == "rotor.axial_runout"

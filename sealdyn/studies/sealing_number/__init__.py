@@ -140,9 +140,8 @@ def _over_speed(scene, ring) -> dict:
     """Films to be expected with the scene's own friction over the shaft's speed, up to where the inertia of a ring that
     nods takes all the moment that a film has (of one that turns: twice its own speed); None where there is none."""
     pair, q, most = free.pair_of(scene), free.force_ratio_of(scene), 2.0 * ring.shaft_speed
-    inertia = (pair.ring.support.tilt()[0] - pair.stiffness) / ring.shaft_speed**2
-    own = pair.stiffness + inertia * ring.shaft_speed**2
-    arm = ring.mean_radius * ring.spring_force / pair.tilt
+    own, arm = pair.ring.support.tilt()[0], ring.mean_radius * ring.spring_force / pair.tilt
+    inertia = (own - pair.stiffness) / ring.shaft_speed**2
     if inertia > 0.0:
         most = ((arm + own) / inertia) ** 0.5
     speeds, films = np.linspace(0.0, most, SPEEDS + 1)[1:], []

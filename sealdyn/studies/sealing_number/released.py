@@ -134,6 +134,7 @@ def ring_of(scene) -> quasi_static.Ring:
     name, seal = RING_NAMES[pair.floating], pair.ring.secondary_seal
     other = RING_NAMES[1 - pair.floating]
     turning, gives = initially(scene.stator.speed), seal is not None and seal.stiffness is not None
+    own = initially(pair.ring.misalignment)
     stands = pair.floating == ROTOR or not turning
     pressures = [initially(f.inner_pressure), initially(f.outer_pressure)]
     floor = none if f.cavitation_pressure is None else f"{f.cavitation_pressure:g} Pa"
@@ -153,6 +154,8 @@ def ring_of(scene) -> quasi_static.Ring:
         ("stator.speed", stands, f"{turning:g} rad/s", "a ring that stands, or a flexible rotor"),
         ("contact", scene.contact is not None, none, "asperities for the ring to land on"),
         ("film.coning", slope == 0.0, f"{slope:g} rad", "flat faces"),
+        (f"{name}.misalignment", not own, f"{own:g} rad", "a ring square in its springs"),
+        ("rotor.axial_runout", not scene.rotor.axial_runout, "some", "none: faces at one distance"),
         (pair.key, pair.tilt > 0.0, f"{pair.tilt:g} rad", "a misaligned seat"),
     )
     for key, there, found, expected in wanted:
