@@ -13,7 +13,6 @@ from ..scene.contact import film_in_words, limit_in_words
 from ..scene.scene import SceneError
 from ..scene.sweep import end
 from .contact_events import ContactEvents
-from .elastic_seal import Reversals
 from .extrema import ExtremaTracker
 from .imposed_motion import harmonics_of_segment
 from .intervals import constant_and_slope
@@ -70,6 +69,9 @@ class RunState:
         self.contacts = ContactEvents(model, self.extrema)
         self.stick_slip = StickSlip(model) if model.unknowns.coulomb_rings else None
         if model.unknowns.elastic_rings:
+            # Loaded only where a seal gives.
+            from .elastic_seal import Reversals
+
             self.stick_slip = Reversals(model)
         remark = model.interface.film.remark
         self.reasons = [*model.unknowns.reasons, *([remark] if remark else []), *model.scene.housing.remarks(duration)]

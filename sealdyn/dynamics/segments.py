@@ -12,7 +12,6 @@ from ..faces.waviness import highest_orders
 from ..scene.rings import STATOR
 from ..solvers.contract import SolverFailure
 from . import equations, linearisation
-from .elastic_seal import elements_block
 from .extrema import longest_scan, scan_pace
 from .imposed_motion import (
     CONING_PER_SPEED_SQUARED,
@@ -86,6 +85,8 @@ class Segment:
         head = np.array([x for pair in pairs for x in pair] + [*coned, *angles, len(rows)])
         p = np.concatenate([self.model.unknowns.ring_block, imposed_block(head, rows, self.sweeps, scene, interval)])
         for k in self.model.unknowns.elastic_rings:
+            from .elastic_seal import elements_block
+
             block = elements_block(self.model.unknowns.seal(k), self.model.unknowns.with_tilt, self.stuck.get(k))
             p[equations.RING * k + equations.SEAL_AT] = len(p)
             p = np.concatenate([p, block])

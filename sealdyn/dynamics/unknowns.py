@@ -11,11 +11,9 @@ from ..scene.rings import RING_NAMES, ROTOR, STATOR
 from ..scene.sweep import largest_amplitude, tilts
 from ..scene.variants import turning_supports
 from . import equations
-from .elastic_seal import POINTS, elastic_friction
 from .imposed_motion import AXIAL, MOMENT, UNBALANCE, fluid_conditions, harmonics_of_segment
 from .intervals import largest_value
 from .native import SEAL_TYPE, Value
-from .secondary_seal import friction_on_ring
 from .swept_motion import motions
 
 # Works and the sum of their absolute values; with contact or a secondary seal two more works and an impulse.
@@ -81,7 +79,7 @@ class Unknowns:
         for name in self.turning_supports:
             self.reasons.append(f"{name}: two tilt stiffnesses that turn, so that the tilts are driven twice a turn")
         if self.elastic_rings and self.with_tilt:
-            self.reasons.append(f"secondary seal that gives: taken at {POINTS} places around it")
+            self.reasons.append("secondary seal that gives: place by place around its circle")
         if self.massless:
             self.reasons.append("massless ring: no rates among its unknowns, first order in time (IDA)")
         if film_unknowns:
@@ -137,7 +135,11 @@ class Unknowns:
             if seal:
                 block[equations.SEAL_LINE], block[equations.SEAL_RADIUS] = seal.line(), seal.radius
                 block[equations.SEAL_SMOOTH] = seal.law == "regularised"
-                friction = friction_on_ring if k not in self.elastic_rings else elastic_friction
+                # Loaded only where a ring has it.
+                if k in self.elastic_rings:
+                    from .elastic_seal import elastic_friction as friction
+                else:
+                    from .secondary_seal import friction_on_ring as friction
                 block[equations.SEAL_KERNEL] = Value(friction, SEAL_TYPE).address
             block[equations.FLOATS : equations.AXIAL_K] = 1.0, ring.mass, ring.transverse_inertia, ring.polar_inertia
             block[equations.AXIAL_K : equations.AT_Z] = support.axial_stiffness, support.axial_damping, *support.tilt()
