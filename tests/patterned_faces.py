@@ -53,4 +53,4 @@ def seal(film, speed=800.0, stator=(), rotor=(), floats="stator"):
 def scenario(scene, **run):
     """The scene as a scenario; `run`: keys of its [run] table."""
     given = read_scenario(REFERENCE)
-    return replace(given, scene=scene, run=replace(given.run, **run))
+    return replace(given, scene=scene, run=replace(given.run, **run), read=None)

@@ -4,7 +4,6 @@ runs compile, made ready before them."""
 import contextlib
 import tempfile
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 from time import monotonic
 
@@ -109,8 +108,8 @@ def compile_all(progress: Callable[[float, float, str], None]) -> str:
     with tempfile.TemporaryDirectory() as folder:
         for done, (name, path) in enumerate(paths.items()):
             given = read_scenario(path)
-            length = {key: SHARE * value for key in ("turns", "duration") if (value := getattr(given.run, key))}
-            given = replace(given, run=replace(given.run, **length))
+            given = given.with_({f"run.{key}": SHARE * value for key in ("turns", "duration")
+                                 if (value := getattr(given.run, key))})  # fmt: skip
             radial = isinstance(given.scene, RadialScene)
             for scenario in (given, *(() if radial else _others(given, met))):
                 film = "" if radial else f", film {scenario.scene.film.model}"

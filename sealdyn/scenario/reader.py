@@ -5,6 +5,7 @@ import dataclasses
 import os
 import stat
 import tomllib
+import zlib
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -82,6 +83,18 @@ class Scenario:
     application: Application | RadialApplication | None = field(default=None, compare=False)
     gauge: frozenset[str] = field(default=frozenset(), compare=False)
     foreign_start: str = field(default="", compare=False)
+    # Of scene and run as they were read from the text.
+    read: int | None = field(default=None, compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        """An archive holds the text: another scene or run beside it is refused, but of what sets `read` to None."""
+        if not self.text:
+            return
+        now = zlib.crc32(repr((self.scene, self.run)).encode())
+        if self.read not in (None, now):
+            found = "a scene or run other than its text says"
+            raise ScenarioError(self.name, "scene", found, 'with_({"film.clearance": "8 um"}), which changes both')
+        object.__setattr__(self, "read", now)
 
     def resolved(self) -> dict:
         """Nested SI values of every key, defaults included; only dicts, lists, numbers, strings, None."""
@@ -326,7 +339,7 @@ def with_values(scenario: Scenario, values: dict[str, Any]) -> Scenario:
     found = read_tables(tables, scenario.name, frozenset(given), scenario.path and scenario.path.parent, bare=bare)
     start = "" if {"run", "run.start"} & set(values) else scenario.foreign_start
     return dataclasses.replace(
-        scenario, **found, bare=frozenset(bare), overrides=[*scenario.overrides, *more], foreign_start=start
+        scenario, **found, bare=frozenset(bare), overrides=[*scenario.overrides, *more], foreign_start=start, read=None
     )
 
 

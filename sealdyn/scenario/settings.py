@@ -146,7 +146,7 @@ def without(scenario: Scenario, what) -> tuple[Scenario, list[str]]:
         check_scene(scene, scenario.run)
     except SceneError as error:
         raise ScenarioError(scenario.name, error.key, error.found, error.expected) from None
-    return dataclasses.replace(scenario, scene=scene), names
+    return dataclasses.replace(scenario, scene=scene, read=None), names
 
 
 def axis(words: str, name: str, where: str) -> dict:

@@ -114,16 +114,7 @@ def parts(scenario, run, plan, outcome, tally, speeds: bool = True) -> dict:
         "energy_residual": outcome.energy_residual,
         # Last of what may fail: what has failed is told.
         "warnings": lambda: [caution.sentence for caution in _cautions(scenario, run, outcome, tally)] + failed,
-        "counts": {
-            "rhs": outcome.counts.rhs,
-            "steps": outcome.counts.steps,
-            "jacobians": outcome.counts.jacobians,
-            "restarts": outcome.counts.restarts,
-            "rejected": outcome.counts.rejected,
-            "unsolved": outcome.counts.unsolved,
-            "orders": outcome.counts.orders,
-            "back_end": outcome.counts.back_end,
-        },
+        "counts": {name: count for name, count in vars(outcome.counts).items() if name != "slow"},
         "tolerance": outcome.tolerance,
         "accuracy": model.accuracy,
         "end": {
@@ -269,13 +260,9 @@ def _secondary_seal(run):
     found = run.stick_slip
     if found is None or unknowns.elastic_rings:
         return {"rings": rings, "sticks": None, "slips": None, "energy_dropped": None, "stuck_at_end": None}
-    return {
-        "rings": rings,
-        "sticks": found.sticks,
-        "slips": found.slips,
-        "energy_dropped": found.dropped,
-        "stuck_at_end": [RING_NAMES[k] for k, held in found.stuck.items() if held],
-    }
+    held = [RING_NAMES[k] for k, held in found.stuck.items() if held]
+    return {"rings": rings, "sticks": found.sticks, "slips": found.slips, "energy_dropped": found.dropped,
+            "stuck_at_end": held}  # fmt: skip
 
 
 # At which volumes of a gas are stated.
@@ -458,20 +445,12 @@ def _closed_form(segment, at, linear, tilt):
         film_damping=linear.film_d[1, 1],
     )
     if arrangement[1]:
-        found["arrangement"] = "FMR"
-        found["static_transmissibility"] = closed_form.fmr_static(**numbers)
-        found["dynamic_transmissibility"] = closed_form.fmr_dynamic(**numbers)
-        static, dynamic = (
-            _first(scene.stator.misalignment, at),
-            _first(scene.rotor.misalignment, at),
-        )
+        name, own = "FMR", scene.rotor.misalignment
+        static, dynamic = closed_form.fmr_static(**numbers), closed_form.fmr_dynamic(**numbers)
     else:
-        found["arrangement"] = "FMS"
-        found["static_transmissibility"] = closed_form.fms_static(**numbers)
-        found["dynamic_transmissibility"] = closed_form.fms_dynamic(**numbers)
-        static, dynamic = _first(scene.stator.misalignment, at), _first(scene.rotor.runout, at)
-    most, least = closed_form.superposed(
-        found["static_transmissibility"] * abs(static), found["dynamic_transmissibility"] * abs(dynamic)
-    )
-    found["formula_max"], found["formula_min"] = float(most), float(least)
-    return found
+        name, own = "FMS", scene.rotor.runout
+        static, dynamic = closed_form.fms_static(**numbers), closed_form.fms_dynamic(**numbers)
+    found |= {"arrangement": name, "static_transmissibility": static, "dynamic_transmissibility": dynamic}
+    imposed, turning = abs(_first(scene.stator.misalignment, at)), abs(_first(own, at))
+    most, least = closed_form.superposed(static * imposed, dynamic * turning)
+    return found | {"formula_max": float(most), "formula_min": float(least)}

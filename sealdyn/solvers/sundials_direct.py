@@ -223,6 +223,12 @@ def _sparse_jacobian(tau, alpha, y, yp, res, matrix, carried, spare, another, th
     return status
 
 
+# At order one the rate that a step finds of a ring of little mass hangs on the step's length, and the many unknowns of
+# a film hide its error until it is large: a step twice as long fails, the next begins at order one again, and so for
+# ever.  Steps grow by less, and seldom fail.
+GROWTH = 1.3
+
+
 def set_sparse_solver(made, memory, vector, segment, carried):
     """Give IDA of this `memory` the sparse Jacobian of a segment and a solver for it; `carried` gets the words."""
     pattern, lib = segment.pattern, made.lib
@@ -236,13 +242,10 @@ def set_sparse_solver(made, memory, vector, segment, carried):
     matrix, solver = made.sparse(vector, pattern.nnz, lambda: carried.words[FACTORED])
     lib.IDASetLinearSolver(memory, solver, matrix)
     lib.IDASetJacFn(memory, ctypes.c_void_p(_sparse_jacobian.address))
+    lib.IDASetEtaMax(memory, ctypes.c_double(GROWTH))
 
 
 # --- IDA ----------------------------------------------------------------------------------------------
-
-# At order one the rate that a step finds of a ring of little mass hangs on the step's length: a step twice as long
-# fails, the next begins at order one again, and so for ever.  A step grows by less, and seldom fails.
-GROWTH = 1.3
 
 _ida_order = types.ExternalFunction("IDAGetLastOrder", int32(ADDRESS, ADDRESS))
 _ida = types.ExternalFunction("IDASolve", int32(ADDRESS, float64, ADDRESS, ADDRESS, ADDRESS, int32))
@@ -305,7 +308,6 @@ def ida(segment, tau, y, method, tolerance, counts):
             lib.IDASetId(memory, made.vector(differential))
         lib.IDASetMaxNumSteps(memory, ctypes.c_long(MOST_STEPS))
         lib.IDASetMaxStep(memory, ctypes.c_double(longest_step(segment)))
-        lib.IDASetEtaMax(memory, ctypes.c_double(GROWTH))
         lib.IDASetStopTime(memory, ctypes.c_double(segment.length))
         rows = FEW if segment.may_change else BLOCK
         while reached[0] < segment.length:

@@ -32,8 +32,8 @@ SHORTENED = {
     "hang_up": ["run.turns=3"], "rub": ["run.turns=50"], "fms_reference": ["run.turns=30"],
     "fmr_reference": ["run.turns=30"], "fmsr_both_flexible": ["run.turns=30"], "free_precession": ["run.turns=30"],
 }  # fmt: skip
-FLAGS = {"tolerances": 6, "loosest": 1e-2, "tightest": 1e-12, "repeats": 2, "longest": 10.0, "samples": 200,
-         "judging": 60.0, "models": False}  # fmt: skip
+FLAGS = {"tolerances": 5, "loosest": 1e-2, "tightest": 1e-12, "repeats": 2, "longest": 2.0, "samples": 200,
+         "judging": 30.0, "models": False}  # fmt: skip
 # Contact all the way: fewer tolerances.
 FEWER = {"rub": {"tolerances": 4}, "rub_chaotic": {"tolerances": 4, "longest": 3.0, "judging": 25.0}}
 

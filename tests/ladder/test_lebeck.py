@@ -18,7 +18,7 @@ from sealdyn.faces.geometry import FLOW_INNER, FLOW_OUTER
 from sealdyn.films.reynolds.film import FILM as REYNOLDS_FILM
 from sealdyn.films.reynolds.mesh import ANGLE_STEP, AREA, SECTORS, table
 from sealdyn.scenario.errors import ScenarioError
-from sealdyn.scenario.reader import read_scenario
+from sealdyn.scenario.reader import Scenario, read_scenario
 from sealdyn.scene.film import Film, Reynolds
 from sealdyn.scene.patterns import Waviness
 from sealdyn.scene.scene import SceneError
@@ -167,7 +167,7 @@ def test_waves_that_travel_wear_evenly_what_standing_ones_wear_at_their_crests()
     assert root["stator_wear"]["travelling"] == pytest.approx(1e-16 * speed * np.mean(around), rel=2e-3)
     assert root["stator_wear"]["standing"] == pytest.approx(1e-16 * speed * crest, rel=2e-3)
     assert root["wear_rate"] == pytest.approx(4 * root["stator_wear"]["travelling"], rel=1e-12)
-    flat = equilibrium.run(replace(scenario, scene=plane), equilibrium.Settings(points=3), None)["roots"][0]
+    flat = equilibrium.run(Scenario(plane, scenario.run), equilibrium.Settings(points=3), None)["roots"][0]
     assert flat["wear_rate"] > 0.0 and "stator_wear" not in flat
 
 

@@ -132,7 +132,7 @@ def balanced(*overrides, **settings):
     seal = read_scenario(SCENARIOS / "fms_reference.toml", ["film.model=radial"])
     film = replace(seal.scene.film, clearance=None)
     closing = replace(seal.scene.closing, balance_ratio=0.85, spring_force=40.0)
-    seal = replace(seal, scene=replace(seal.scene, film=film, closing=closing))
+    seal = replace(seal, scene=replace(seal.scene, film=film, closing=closing), read=None)
     return coefficients.run(with_values(seal, dict(overrides)), Settings(**{"points": 2} | settings), None)
 
 

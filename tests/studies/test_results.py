@@ -105,7 +105,8 @@ def test_what_a_point_is():
 
 
 def test_every_field_of_a_scenario_is_told_from_others_or_tells_where_it_came_from():
-    whence = {"study", "text", "bare", "gauge", "application", "name", "path", "overrides", "question", "foreign_start"}
+    whence = {"study", "text", "bare", "gauge", "application", "name", "path", "overrides", "question", "foreign_start",
+              "read"}  # fmt: skip
     assert {f.name for f in dataclasses.fields(sealdyn.scenario.reader.Scenario) if not f.compare} == whence
 
 

@@ -3,6 +3,7 @@
 import inspect
 import io
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -205,3 +206,15 @@ def test_a_sweep_of_one_key_has_its_values_as_index():
     assert list(table.index) == ["10 urad", "20 urad"] and table.index.name == "rotor.runout"
     with pytest.raises(sealdyn.ScenarioError, match="no values"):
         sealdyn.sweep(scenario, {"rotor.runout": []})
+
+
+def test_another_scene_beside_the_text_is_refused():
+    """Its archive would hold the text's seal, and a study would read that."""
+    scenario = sealdyn.read_scenario(TILTED)
+    scene = replace(scenario.scene, film=replace(scenario.scene.film, clearance=8e-6))
+    with pytest.raises(sealdyn.ScenarioError) as refused:
+        replace(scenario, scene=scene)
+    assert refused.value.key == "scene" and "with_" in refused.value.expected
+    with pytest.raises(sealdyn.ScenarioError):
+        replace(scenario, run=replace(scenario.run, accuracy=1e-3))
+    assert replace(scenario, name="other").with_(film__clearance=8e-6).scene == scene

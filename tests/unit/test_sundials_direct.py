@@ -11,7 +11,7 @@ import pytest
 from scenes import SPEED, fmr, fms, fmsr, prepared, runup
 
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
-from sealdyn.scenario.reader import read_scenario
+from sealdyn.scenario.reader import Scenario, read_scenario
 from sealdyn.scene.contact import Contact
 from sealdyn.scene.rings import Stator
 from sealdyn.simulation.simulate import simulate_in_memory
@@ -97,7 +97,7 @@ def test_steps_that_come_to_nothing_end_the_run(solver, capfd):
     # No file may say so.
     stiff = replace(stator, support=replace(stator.support, axial_stiffness=1e300))
     with np.errstate(over="ignore"):
-        summary = simulate_in_memory(replace(scenario, scene=replace(scenario.scene, stator=stiff)))
+        summary = simulate_in_memory(Scenario(replace(scenario.scene, stator=stiff), scenario.run))
     assert summary["status"] == "failed" and f"{solver} gave up 0 s into this segment" in summary["message"]
     assert "WARNING" not in "".join(capfd.readouterr())
 
