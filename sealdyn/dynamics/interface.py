@@ -122,6 +122,10 @@ class Interface:
         """The Film table with half the cells of this one's."""
         return self.film.halved(self._table_used)
 
+    def finer(self):
+        """The Film table of aligned faces with four times the cells of this one's."""
+        return self.film.finer(self._table_used)
+
     @property
     def film_wrench(self):
         """Function `wrench(f, s)`: force and moments of the film alone; of one with unknowns when it is steady."""

@@ -179,7 +179,9 @@ class Film:
                        so many times (dynamics/interface.py).
     `grid_accuracy(table)`
         the relative error that its cells may have, beside the accuracy of a run.
-    `halved(table)`    the table with half the cells, which err four times as much, or two to the `cell_order(table)`.
+    `halved(table)`    the table with half the cells, which err four times as much, or two to the `cell_order(table)`;
+                       with `finer(table)`, four times the cells of aligned faces, by which it is measured
+                       how much more they err.
 
     Its stiffness and damping follow by condensation (dynamics/condensation.py); where some unknowns are differential
     they hang on the frequency, and modes and responses have them at their own (dynamics/film_modes.py).
@@ -232,6 +234,7 @@ class Film:
     grid_accuracy: Callable | None = None
     halved: Callable | None = None
     cell_order: Callable | None = None
+    finer: Callable | None = None
 
 
 def force_over_clearance(table, f, s, solve) -> Callable:

@@ -21,7 +21,7 @@ from ..solvers.global_error import GlobalErrorEstimate
 from ..solvers.integrate import COMPILED, Advance, Outcome
 from ..solvers.matrix_exponential import BETWEEN
 from ..solvers.methods import METHODS
-from .film_error import cell_error, model_error
+from .film_error import cell_error, model_error, share_of_halving
 from .selection import Plan, choose_method
 from .verification_run import EXPLICIT, LEAST_SHARPER, OTHER, UNBOUNDED, Comparison, ErrorScales, budget
 
@@ -41,6 +41,8 @@ LEFT_OUT = 0.05
 LOOSER, SHARE, ENERGY = 30.0, 0.5, 2.5
 # The share of the accuracy beyond which a run goes on with a sharper tolerance.
 ERROR_SHARE = 0.6
+# What halving the cells says of their error, times this, counts as it.
+CELLS = 1.5
 # Motion so many times faster than all that turns or shakes, and damped by less than this share of its frequency, rings
 # after every error of a step that passes over it, which the steps do not show: a gas dam's, which damps nothing.
 RINGS, DEAD = 10.0, 0.05
@@ -237,7 +239,9 @@ def _by_film(run: RunState, by_model: float | None, cells) -> tuple[float | None
     interface = run.model.interface
     if by_model is None and interface.film.constant:
         by_model = model_error(run)
-    known = [cell_error(run), None if cells is None else float(np.nanmax(cells, initial=0.0))]
+    known = [cell_error(run)]
+    if cells is not None:
+        known.append(CELLS * share_of_halving(run) * float(np.nanmax(cells, initial=0.0)))
     by_cells = max((error for error in known if error is not None), default=None)
     if by_cells is None and run.model.observed[0].halved is not None:
         by_cells = math.inf
@@ -264,7 +268,7 @@ def certify(
 ) -> Certificate:
     """Certificate of a finished run by this method with this `tolerance`, with the errors of its steps (`errors`) and
     of its film (`by_model`, relative) as far as they have been followed; `measured`: instants (m,) (s) and how
-    far (m,) it is from a sharper run there; `cells`: error of the film's cells at some instants."""
+    far (m,) it is from a sharper run there; `cells`: how far half the film's cells are at some instants."""
     by_solver = errors.worst if errors else solver_error(method, tolerance, measured and measured[1])
     if by_solver is not None and method != "expm":
         by_solver = max(by_solver, LEFT_OUT * run.model.accuracy)
@@ -315,7 +319,7 @@ def certificate(
             stiff = plan.method == "radau" and _would_take_bdf(run)
             apart, cells = (
                 seen.error_over_time(progress, stop, **how, stiff=stiff),
-                seen.error_of_cells(progress, stop, **how),
+                seen.change_by_halving(progress, stop, **how),
             )
         except Enough:
             return _interruption(asked, outcome)

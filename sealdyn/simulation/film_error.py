@@ -39,6 +39,8 @@ from .verification_run import ErrorScales
 
 # Steps along which the defect is followed: per fastest period, at once, and in all; points of a steady period.
 FOLLOWED, AT_ONCE, MOST, STEADY = 16, 125, 250, 32
+# What divides a change that is none.
+TINY = 1e-300
 # Least eigenvalue of a scene whose rings are all held, as a share of the largest.
 HELD = 1e-12
 
@@ -281,25 +283,53 @@ def cell_error(run: RunState) -> float | None:
     **Source** Richardson (1911), *Phil. Trans. R. Soc. A* 210, 307: what halving changes, over 2^p - 1, is the error of
     a method of order p.
     """
-    model = run.model
-    film, f = model.observed
+    film, f = run.model.observed
     if film.halved is None:
         return None
-    coarse = film.parameters(model.interface.halved(), model.clearance)
-    lay_surfaces(coarse, model.scene)
-    scales, worst = ErrorScales(run), 0.0
+    found = _apart_at_rest(run, f, _block(run.model, run.model.interface.halved()))
+    return None if found is None else float(found.max()) * share_of_halving(run)
+
+
+def share_of_halving(run: RunState) -> float:
+    """Error of the film's cells over what halving them changes: 1 / (2^p - 1) of their order p; of cells too wide for
+    that order what four times as many say of the aligned film, as if of order one, where that is more.
+    **Source** as `cell_error`."""
+    model, (film, f) = run.model, run.model.observed
+    asymptotic = 1.0 / (2.0**model.interface.cell_order - 1.0)
+    if film.finer is None:
+        return asymptotic
+    others = [_block(model, table) for table in (model.interface.halved(), model.interface.finer())]
+    halved, finer = (_apart_at_rest(run, f, other, aligned=True) for other in others)
+    if halved is None or finer is None:
+        return asymptotic
+    return max(asymptotic, 4.0 / 3.0 * float((finer / np.maximum(halved, TINY)).max()))
+
+
+def _block(model: Model, table) -> np.ndarray:
+    """The film's block of another Film table."""
+    block = model.observed[0].parameters(table, model.clearance)
+    lay_surfaces(block, model.scene)
+    return block
+
+
+def _apart_at_rest(run: RunState, f, other, aligned: bool = False) -> np.ndarray | None:
+    """Largest error (2,) of the film's loads at rest in block `f` beside those in block `other`, at the gap where the
+    run began and where it ended, with its tilts or `aligned`; None where there are no steady pressures."""
+    film, scales, found = run.model.observed[0], ErrorScales(run), []
     for index, tau, y in ((0, 0.0, run.y0), run.last or (0, 0.0, run.y0)):
         loads = []
-        for block in (f, coarse):
+        for block in (f, other):
             s, x = run.segment(index).gap_state(tau, y).copy(), np.empty(len(film.unknowns(block).names))
             s[[DZ_RATE, GX_RATE, GY_RATE, CONING_RATE]] = 0.0
+            if aligned:
+                s[[GX, GY]] = 0.0
             if film.start(block, s, x):
                 return None
             film.flow(block, s, x)
             still = np.zeros(2 * scales.n)
             loads.append([[*still, s[FORCE], s[MOMENT_X], s[MOMENT_Y], s[FLOW_INNER], 0.0]])
-        worst = max(worst, scales.errors(*map(np.array, loads[::-1])).max())
-    return float(worst) / (2.0**model.interface.cell_order - 1.0)
+        found.append(scales.errors(*map(np.array, loads[::-1])).max())
+    return np.array(found)
 
 
 def steady_tilt(model: Model) -> tuple[complex, float, str]:

@@ -38,8 +38,6 @@ SHARPER_AT_SECOND = 8.0
 JUMP_QUANTILE = 0.99
 # The share of its film's error that the second run has, where faces touch.
 SHARPER_FILM = 0.1
-# What halving the cells changes, over 2^p - 1 of their order p, times this counts as their error.
-CELLS = 1.5
 # Another method where the same one cannot be any sharper.
 OTHER = {"adams": "bdf", "bdf": "radau", "ida": "ida", "dop853": "radau", "radau": "dop853", "trbdf2": "trbdf2"}
 # Methods that crawl where decay is fast: none is tried where BDF was, or would be, chosen for that.
@@ -135,11 +133,11 @@ class Comparison:
         again = self.run.anew(model.with_sharper_film(SHARPER_FILM) if model.scene.contact else None)
         return self._apart(again, *sharper(method, tolerance, self.run, stiff), progress, stop, work)
 
-    def error_of_cells(
+    def change_by_halving(
         self, progress=None, stop=None, *, method: str, tolerance: float, work: float = math.inf
     ) -> np.ndarray | None:
-        """The same of the film's cells, from the run with half of them; None of a film that has none to halve, or that
-        half of them cannot describe."""
+        """How far (m,) the run with half the film's cells is from this one; None of a film that has none to halve, or
+        that half of them cannot describe."""
         model = self.run.model
         film = model.observed[0]
         if film.halved is None:
@@ -151,8 +149,7 @@ class Comparison:
             return None
         again, rings = RunState(coarse, self.run.duration), model.unknowns.n_mechanical
         again.y0[:rings] = self.run.y0[:rings]
-        apart = self._apart(again, method, tolerance, progress, stop, work)
-        return None if apart is None else CELLS * apart / (2.0**model.interface.cell_order - 1.0)
+        return self._apart(again, method, tolerance, progress, stop, work)
 
     def _apart(self, again, method, tolerance, progress, stop, work) -> np.ndarray | None:
         """How far (m,) this run is from another one, done by `method` with `tolerance`, at each instant."""
@@ -215,7 +212,7 @@ class RadialComparison(Comparison):
         again = self.run.sharper(SHARPER)
         return self._apart(again, *sharper(method, tolerance, self.run), progress, stop, work)
 
-    def error_of_cells(
+    def change_by_halving(
         self, progress=None, stop=None, *, method: str, tolerance: float, work: float = math.inf
     ) -> None:
         """None: there is no film."""

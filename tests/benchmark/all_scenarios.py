@@ -58,7 +58,7 @@ def archives(fresh: bool) -> list[Path]:
 
 
 def draw(paths, out):
-    """One panel per scenario: largest error over time against wall time."""
+    """One panel per scenario: largest error over time against processor time."""
     across = 4
     down = math.ceil((len(paths) + 1) / across)
     with look():
@@ -83,7 +83,7 @@ def draw(paths, out):
             ax = figure.add_subplot(grid[k // across, k % across])
             answer = info["answer"]
             title = f"{info['name'].replace('_', ' ')}, {answer['scene']['turns']:.4g} turns"
-            panel = chart.precision(answer, "over_time", "wall", title=title)
+            panel = chart.precision(answer, "over_time", "processor", title=title)
             draw_panel(ax, replace(panel, x=replace(panel.x, label="error")))
             winners = [f"{row['error']:.0e} {chart.SHORT[row['method']]}" for row in answer["fastest"] if row["method"]]
             note = "fastest: " + ", ".join(winners) if winners else answer["fastest"][0].get("why", "")
@@ -108,9 +108,9 @@ def winners(paths) -> dict:
     for path in paths:
         info = read_study(path)
         answer = info["answer"]
-        machine = machine or {key: value for key, value in answer["machine"].items() if key != "busy"}
+        machine = machine or answer["machine"]
         scenes.append({"name": info["name"], "overrides": info["overrides"], "turns": answer["scene"]["turns"],
-                       "where": answer["where"], "busy": answer["machine"].get("busy"),
+                       "where": answer["where"],
                        "judge_error": (answer["judge_error"] or {}).get(answer["where"]),
                        "fastest": answer["fastest"]})  # fmt: skip
     return {"command": "python tests/benchmark/all_scenarios.py", "machine": machine, "scenes": scenes}

@@ -39,18 +39,18 @@ def number(value: float | None, digits: int = 2) -> str:
 def fastest():
     """The fastest method on the reference scene at each error."""
     answer = read_study(GALLERY / "work_precision_fmr.h5")["answer"]
-    yield "error at any time", "fastest", "wall time, ms", "next", "next / fastest", "DOP853 / fastest"
+    yield "error at any time", "fastest", "processor time, ms", "next", "next / fastest", "DOP853 / fastest"
     for row in answer["fastest"]:
         names = [NAMES.get(row[key], "-") for key in ("method", "next")]
-        yield (f"{row['error']:.0e}", names[0], number(row["wall"] * 1e3, 3), names[1], number(row["factor_next"]),
+        yield (f"{row['error']:.0e}", names[0], number(row["processor"] * 1e3, 3), names[1], number(row["factor_next"]),
                number(row["factor_dop853"]))  # fmt: skip
 
 
 def models():
-    """Film models on the reference scene: error of the steady state and wall time."""
-    yield "model", "error of the steady state", "wall time, ms"
+    """Film models on the reference scene: error of the steady state and processor time."""
+    yield "model", "error of the steady state", "processor time, ms"
     for row in read_study(GALLERY / "work_precision_fmr.h5")["answer"]["models"]:
-        yield row["label"], number(row["error"]["steady"]), number(row["wall"] * 1e3)
+        yield row["label"], number(row["error"]["steady"]), number(row["processor"] * 1e3)
 
 
 def machine():

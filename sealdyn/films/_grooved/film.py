@@ -74,6 +74,7 @@ from .cells import (
     TURNED_TOO,
     cell_order,
     film_of_triangle,
+    finer,
     halved,
     land_rates,
     lands,
@@ -430,4 +431,5 @@ FILM = Film(
     prepared=prepared,
     halved=halved,
     cell_order=cell_order,
+    finer=finer,
 )

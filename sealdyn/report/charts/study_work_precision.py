@@ -1,4 +1,4 @@
-"""Work and precision: error against wall time and right-hand sides by method, and by model rung on the same axes."""
+"""Work and precision: error against processor time and right-hand sides by method, and by rung of the models."""
 
 import math
 
@@ -13,10 +13,10 @@ from .page import save
 from .record import MILLISECONDS
 
 # Of a cost: what its axis says, and how many of its unit make one.
-COSTS = {"wall": ("wall time, ms", MILLISECONDS), "rhs": ("right-hand sides", 1.0)}
+COSTS = {"processor": ("processor time, ms", MILLISECONDS), "rhs": ("right-hand sides", 1.0)}
 # Errors beyond so many clearances are all as bad; the least that a float can show, and that of models.
 MOST, LEAST, LEAST_OF_MODELS = 1e3, 1e-16, 1e-12
-TITLES = {"end": "error at the end", "over_time": "largest error over time", "steady": "error of the steady state"}
+TITLES = {"end": "error at the end", "over_time": "largest error", "steady": "steady error"}
 SHORT = {"adams": "Adams", "bdf": "BDF", "bdf2": "BDF 2", "ida": "IDA", "dop853": "DOP853", "rk45": "RK45",
          "lsoda": "LSODA", "radau": "Radau", "newmark": "Newmark", "generalised_alpha": "gen.-α",
          "midpoint": "midpoint", "expm": "expm", "trbdf2": "TR-BDF2"}  # fmt: skip
@@ -35,7 +35,7 @@ def draw(path, out):
     """Error against time and right-hand sides, models beside solvers, and how it was measured."""
     study = read_study(path)
     answer = study["answer"]
-    panels = [precision(answer, where, "wall") for where in TITLES]
+    panels = [precision(answer, where, "processor") for where in TITLES]
     panels += [precision(answer, answer["where"], "rhs", labels=True), models(answer)]
     title = f"How much solver, how much model: {study['name'].replace('_', ' ')}"
     return save(study_sheet(study, panels, title, caption(study), " ".join(answer["verdict"][:2])), out)
@@ -86,13 +86,13 @@ def models(answer) -> Panel:
     """One point per rung: the model's error against what a run with it costs, over the edge of all solvers."""
     where = "steady" if any(row["error"]["steady"] is not None for row in answer["models"]) else answer["where"]
     rows = [row for row in answer["models"] if row["error"][where] is not None]
-    title = f"models: {TITLES[where]}, by wall time"
+    title = f"models: {TITLES[where]}, by processor time"
     if not rows:
         return Panel(title, note="no rung to compare")
     edge = sorted(
         (e, MILLISECONDS * w)
         for row in answer["methods"].values()
-        for e, w, s in zip(_errors(row, where), row["wall"], row["status"], strict=True)
+        for e, w, s in zip(_errors(row, where), row["processor"], row["status"], strict=True)
         if s == Status.OK and np.isfinite(e)
     )
     series = []
@@ -100,12 +100,12 @@ def models(answer) -> Panel:
         best = np.minimum.accumulate([w for _, w in edge])
         series.append(Series("line", [e for e, _ in edge], best, label="fastest solver of this scene", style="grey"))
     for k, row in enumerate(rows):
-        words = f"{row['label']}: {row['error'][where]:.1e}, {MILLISECONDS * row['wall']:.2g} ms"
-        at = [max(row["error"][where], LEAST_OF_MODELS)], [MILLISECONDS * row["wall"]]
+        words = f"{row['label']}: {row['error'][where]:.1e}, {MILLISECONDS * row['processor']:.2g} ms"
+        at = [max(row["error"][where], LEAST_OF_MODELS)], [MILLISECONDS * row["processor"]]
         style = f"{RUNGS[k % len(RUNGS)]} {MARKS[k % len(MARKS)]} large front"
         series.append(Series("marks", *at, label=words, style=style))
     along = _error_axis([e for one in series for e in one.x])
-    return Panel(title, along, Axis("1", COSTS["wall"][0], scale="log"), series)
+    return Panel(title, along, Axis("1", COSTS["processor"][0], scale="log"), series)
 
 
 def caption(info) -> str:
@@ -117,10 +117,9 @@ def caption(info) -> str:
     overrides = f" with {', '.join(info['overrides'])}" if info["overrides"] else ""
     return (
         f"Scenario {info['name']}{overrides}, {answer['scene']['turns']:.3g} turns; sealdyn {info['version']}, solvers "
-        f"{solvers_words(info)}. {m['processor']}, {m['cores']} cores (wall time {m.get('busy', 1.0):.2f} of the "
-        f"processor's); {libraries}.\n"
-        f"Wall time: fastest of {settings['repeats']} runs after warm-up, inside the method only.  Error: largest of "
-        "h_min, relative misalignment, leakage, contact impulse, between steps by the program's own interpolation.\n"
+        f"{solvers_words(info)}. {m['processor']}, {m['cores']} cores; {libraries}.\n"
+        f"Processor time: least of {settings['repeats']} runs after warm-up, inside the method only.  Error: largest "
+        "of h_min, relative misalignment, leakage, contact impulse, between steps by the program's own interpolation.\n"
         f"{settings['tolerances']} tolerances, {settings['loosest']:.0e} to {settings['tightest']:.0e}; of fixed steps "
         "(step / fastest period)².  Crosses: did not end well, or too slow; at the left edge if the error is not known."
     )

@@ -39,7 +39,7 @@ INFO = Info(
     timed=("fmr_reference", 33),
     wavy=True,
     # Errors are shares of a scale.
-    units={"wall": "s", "processor": "s", "*": "1"},
+    units={"processor": "s", "*": "1"},
     along={f"methods/{name}": ("tolerance",) for name in NAMES} | {
         f"methods/{name}/{what}": (f"methods/{name}/tolerance",)
         for name in NAMES for what in ("error", *(f"observables/{where}" for where in WHERE))
@@ -55,10 +55,8 @@ ASKED = (1e-3, 1e-6, 1e-9)
 SHARP = (1e-3, 8e-3, 6.4e-2)
 # A method is not judged by itself at tolerances nearer than this to the judge's own.
 CLOSEST = 3.0
-# A wall time below this is measured again.
+# A time below this is measured again.
 BRIEF = 0.3
-# Wall over processor time of a busy machine.
-BUSY = 1.1
 
 
 @dataclass(frozen=True)
@@ -127,7 +125,7 @@ def run(scenario, settings, tools) -> Answer:
         "models": rungs,
         "models_unjudged": unjudged,
         "beside_reynolds": reynolds_comparison(run),
-        "machine": {**machine(), "back_end": back_end(methods), "busy": busy(methods)},
+        "machine": {**machine(), "back_end": back_end(methods)},
         "names": {name: NAMES[name] for name in methods},
     }
     answer["fastest"] = [rank_methods(answer, error) for error in ASKED]
@@ -221,7 +219,7 @@ def _by_itself(scenario, method: str, samples: int, limit: float):
 
 
 def judge(scenario, exact, judges: dict, point: dict) -> dict:
-    """One method over all tolerances against the exact run: columns of wall time, counts, errors, status and reason."""
+    """One method over all tolerances against the exact run: columns of time, counts, errors, status and reason."""
     method, rows = point["method"], []
     # What is compiled is loaded before the clock starts.
     observe(ready(scenario), REFERENCE_METHODS[method], method, 1e-2, 0.05, point["samples"])
@@ -234,14 +232,14 @@ def judge(scenario, exact, judges: dict, point: dict) -> dict:
     # Again, one round after the other: a busy moment of the machine must not hit all runs of one tolerance.
     for _ in range(point["repeats"] - 1):
         for row in rows:
-            if row["status"] == Status.OK and row["wall"] < BRIEF:
+            if row["status"] == Status.OK and row["processor"] < BRIEF:
                 again = _run(scenario, method, row["tolerance"], point, point["limit"])
-                row["wall"], row["processor"] = min(row["wall"], again.wall), min(row["processor"], again.processor)
+                row["processor"] = min(row["processor"], again.processor)
     if judges.get("method") == method:
         for row in rows:
             row["errors"] = {where: {} for where in WHERE}
     names = sorted({name for row in rows for found in row["errors"].values() for name in found})
-    columns = ("tolerance", "wall", "processor", "rhs", "status", "reason", "expected", "back_end")
+    columns = ("tolerance", "processor", "rhs", "status", "reason", "expected", "back_end")
     return {
         **{name: [row[name] for row in rows] for name in columns},
         "error": {where: [max(row["errors"][where].values(), default=None) for row in rows] for where in WHERE},
@@ -260,13 +258,13 @@ def _measured(scenario, method, tolerance, point, exact, limit) -> dict:
     reason = found.reason.split("  Try")[0]
     if found.status == "stopped" and limit < point["limit"]:
         reason = f"more than {point['slowest']:g} times the fastest of the error it would reach"
-    row = {"tolerance": tolerance, "wall": found.wall, "rhs": found.counts.rhs, "status": found.status}
+    row = {"tolerance": tolerance, "processor": found.processor, "rhs": found.counts.rhs, "status": found.status}
     row |= {"back_end": found.counts.back_end}
-    return {**row, "processor": found.processor, "reason": reason, "errors": errors(found, exact)}
+    return {**row, "reason": reason, "errors": errors(found, exact)}
 
 
 def front(rows, where: str) -> list[tuple[float, float]]:
-    """(error, wall time) of every run of these methods that ended."""
+    """(error, processor time) of every run of these methods that ended."""
     return [pair for row in rows if "failed" not in row for pair in curve(row, where)]
 
 
@@ -277,7 +275,7 @@ def _allowed(point, rows, tolerance) -> tuple[float, float | None]:
         return point["limit"], None
     last = known[-1]
     expected = max(last["errors"][point["where"]].values()) * tolerance / last["tolerance"]
-    least = time_at(point["front"], max(expected, 1e-16)) or max(wall for _, wall in point["front"])
+    least = time_at(point["front"], max(expected, 1e-16)) or max(spent for _, spent in point["front"])
     return min(point["limit"], point["slowest"] * least), expected
 
 
@@ -289,14 +287,14 @@ def _found(answer) -> str:
 
 def _tables(answer) -> list[Table]:
     """Who is fastest at which error, which runs did not end well, and the film models."""
-    ranks = (("1", "error", "error"), ("1", "fastest", "method"), ("time", "in", "wall"), ("1", "next", "next"),
+    ranks = (("1", "error", "error"), ("1", "fastest", "method"), ("time", "in", "processor"), ("1", "next", "next"),
              ("1", "times as long", "factor_next"), ("1", "DOP853, times as long", "factor_dop853"),
              ("1", "why none", "why"))  # fmt: skip
     ends = [[name, len(row["status"]), row["status"].count(Status.OK), next(filter(None, row["reason"]), None)]
             for name, row in answer["methods"].items()]  # fmt: skip
     where = film_ladder.looked_at(answer)
     models = [[row["label"], (row.get("error") or {}).get(where), (row.get("leakage_error") or {}).get(where),
-               row.get("wall"), row.get("failed")] for row in answer["models"]]  # fmt: skip
+               row.get("processor"), row.get("failed")] for row in answer["models"]]  # fmt: skip
     return [
         table_of("fastest", ranks, answer["fastest"]),
         Table("methods", [("1", "method"), ("1", "runs"), ("1", "ended"), ("1", "the first that did not")], ends),
@@ -319,19 +317,11 @@ def _notes(answer: dict, settings) -> list[str]:
         lines.append(f"Judged by {judges['exact']}; no second judge: {judges['reason'] or 'none ended in time'}.")
     if judges.get("least", 0.0) > settings.tightest:
         lines.append(f"Tolerances below {judges['least']:.0e} it cannot judge, and they are left out.")
-    if (strained := answer["machine"]["busy"]) > BUSY:
-        lines.append(f"The machine was busy: wall times are {strained:.2g} times the processor's.")
     return lines
 
 
 def _turns(run) -> float:
     return float(abs(run.model.reference_rate) * run.duration / (2 * math.pi))
-
-
-def busy(methods) -> float:
-    """Wall over processor time of all runs together: 1 on a machine that does nothing else."""
-    spent = [sum(sum(row[clock]) for row in methods.values()) for clock in ("wall", "processor")]
-    return spent[0] / spent[1] if spent[1] > 0 else 1.0
 
 
 def back_end(methods) -> str:
@@ -341,7 +331,7 @@ def back_end(methods) -> str:
 
 
 def machine() -> dict:
-    """Processor, cores and versions: what a wall time means."""
+    """Processor, cores and versions: what a time means."""
     name = platform.processor() or platform.machine()
     try:
         with open("/proc/cpuinfo") as lines:
@@ -359,12 +349,12 @@ def mark_slow_runs(methods: dict, where: str, slowest: float):
             if row["status"][k] != Status.OK or error is None:
                 continue
             least = min((w for c in everyone.values() for e, w in c if e <= error), default=math.inf)
-            if row["wall"][k] > slowest * least:
+            if row["processor"][k] > slowest * least:
                 row["status"][k] = "slow"
-                row["reason"][k] = f"{row['wall'][k] / least:.0f} times the fastest of this error"
+                row["reason"][k] = f"{row['processor'][k] / least:.0f} times the fastest of this error"
 
 
-def curve(row: dict, where: str, cost: str = "wall") -> list[tuple[float, float]]:
+def curve(row: dict, where: str, cost: str = "processor") -> list[tuple[float, float]]:
     """(error, cost) of the runs that ended, errors above zero."""
     return [
         (max(error, 1e-16), spent)
@@ -376,11 +366,11 @@ def curve(row: dict, where: str, cost: str = "wall") -> list[tuple[float, float]
 def time_at(points, error: float) -> float | None:
     """Cost at an error: between runs on a line of logarithms, along the lower edge; None below the smallest error."""
     edge, least = [], math.inf
-    for e, wall in sorted(points):
+    for e, spent in sorted(points):
         # From the most exact on: only what is cheaper yet is worth its error.
-        if wall < least:
-            least = wall
-            edge.append((math.log(e), math.log(wall)))
+        if spent < least:
+            least = spent
+            edge.append((math.log(e), math.log(spent)))
     if not edge or edge[0][0] > math.log(error):
         return None
     for (e0, w0), (e1, w1) in pairwise(edge):
@@ -396,18 +386,18 @@ def rank_methods(answer: dict, error: float) -> dict:
     if band is not None and band > error / 3:
         return {"error": error, "method": None, "why": f"the judges differ by {band:.1e}"}
     found = {name: time_at(curve(row, where), error) for name, row in answer["methods"].items()}
-    order = sorted((wall, name) for name, wall in found.items() if wall is not None)
+    order = sorted((spent, name) for name, spent in found.items() if spent is not None)
     if not order:
         collapsed = answer["judges"].get("status") == Status.COLLAPSED
         why = "the film collapses in the judge's run too" if collapsed else "no method got there"
         return {"error": error, "method": None, "why": why}
-    wall, name = order[0]
+    least, name = order[0]
     # Who ended well at the tightest tolerance and is still above this error was not asked tightly enough.
     above = [m for m, row in answer["methods"].items() if found[m] is None and row["status"][-1] == Status.OK]
-    out = {"error": error, "method": name, "wall": wall, "next": None, "factor_next": None, "factor_dop853": None,
+    out = {"error": error, "method": name, "processor": least, "next": None, "factor_next": None, "factor_dop853": None,
            "not_asked": above}  # fmt: skip
     if len(order) > 1:
-        out |= {"next": order[1][1], "factor_next": order[1][0] / wall}
+        out |= {"next": order[1][1], "factor_next": order[1][0] / least}
     if found.get("dop853"):
-        out["factor_dop853"] = found["dop853"] / wall
+        out["factor_dop853"] = found["dop853"] / least
     return out

@@ -64,9 +64,9 @@ def _cells(name: str, film) -> dict:
 
 
 def compare(scenario, samples: int, longest: float, repeats: int, exact=None) -> tuple[list[dict], str | None]:
-    """Rows `{label, error{where}, wall, rhs, failed}` of every rung, cheapest model first, each run with the method
-    and tolerance that the program takes for the scenario's accuracy; `exact` the scenario's own exact run.  And the
-    highest rung of all where it could not be run exactly, None where it could."""
+    """Rows `{label, error{where}, processor, rhs, failed}` of every rung, cheapest model first, each run with the
+    method and tolerance that the program takes for the scenario's accuracy; `exact` the scenario's own exact run.  And
+    the highest rung of all where it could not be run exactly, None where it could."""
     ladder = rungs(scenario)
     highest, top, last = exact, ladder[-1], ladder[-1][0]
     # The scenario's own film may be the highest, and then its exact run is there already.
@@ -119,7 +119,7 @@ def _accuracy(scenario):
 def _run(scenario, rung, highest, samples, longest, repeats) -> dict:
     """One rung in time, at the scenario's accuracy."""
     label, overrides = rung
-    row = {"label": label, "error": {"end": None, "over_time": None, "steady": None}, "wall": None, "failed": None}
+    row = {"label": label, "error": {"end": None, "over_time": None, "steady": None}, "processor": None, "failed": None}
     best = None
     try:
         for _ in range(max(1, repeats) + 1):
@@ -127,12 +127,12 @@ def _run(scenario, rung, highest, samples, longest, repeats) -> dict:
             method = plan.method
             tolerance = tolerance_for(method, scenario.run.accuracy, run.memory)
             found = observe(run, METHODS[method], method, tolerance, longest, samples)
-            best = found if best is None or found.wall < best.wall else best
-            if found.wall > 1.0 or found.status != Status.OK:
+            best = found if best is None or found.processor < best.processor else best
+            if found.processor > 1.0 or found.status != Status.OK:
                 break
     except ValueError as refused:
         return row | {"failed": str(refused)}
-    row |= {"wall": best.wall, "rhs": best.counts.rhs, "method": method}
+    row |= {"processor": best.processor, "rhs": best.counts.rhs, "method": method}
     if best.status != Status.OK or highest.status != Status.OK:
         return row | {"failed": best.reason or f"the highest rung: {highest.reason}"}
     # The motion for itself: a film's leakage is a formula of its own.
@@ -154,11 +154,11 @@ def _balanced(scenario, rung, highest, repeats) -> dict | None:
     )
     if not steady or modes.verdict(run.model.linear_scene(last).modes()) != "stable":
         return None
-    wall = math.inf
+    spent = math.inf
     for _ in range(repeats + 1):
-        begun = clock.perf_counter()
+        begun = clock.process_time()
         found = harmonic_balance(run)
-        wall = min(wall, clock.perf_counter() - begun)
+        spent = min(spent, clock.process_time() - begun)
     length = highest.scales["h_min"]
     tilt = highest.scales["relative_misalignment"]
     off = [abs(found["h_min"] - highest.steady["h_min"][0]) / length]
@@ -169,7 +169,7 @@ def _balanced(scenario, rung, highest, repeats) -> dict | None:
     whose = "Green's" if "green" in overrides.values() else label.partition(" film")[0] + " film's"
     whose = "given" if "as given" in label else whose
     error = {"end": None, "over_time": None, "steady": float(max(off))}
-    return {"label": f"harmonic balance, {whose} coefficients", "error": error, "wall": wall, "failed": None}
+    return {"label": f"harmonic balance, {whose} coefficients", "error": error, "processor": spent, "failed": None}
 
 
 def harmonic_balance(run) -> dict:

@@ -20,21 +20,20 @@ NOTHING = 1e-12
 
 @dataclass
 class Observed:
-    """One run as it is looked at: status and reason, wall time (s) of the integration alone, own counts, sample times
-    (m,) with `series` (m,) by name, located `steady` extremes over the last forcing period or None, `impulse` (N s)
-    or None, and the scales that errors are relative to; `processor` time (s) of the same, less than
-    the wall's on a busy machine; whether its loads `jump`, as those of cells that tear do."""
+    """One run as it is looked at: status and reason, `processor` time (s) of the integration alone, own counts, sample
+    times (m,) with `series` (m,) by name, located `steady` extremes over the last forcing period or None, `impulse`
+    (N s) or None, and the scales that errors are relative to; whether its loads `jump`, as those of cells
+    that tear do."""
 
     status: str
     reason: str
-    wall: float
+    processor: float
     counts: Counts
     times: np.ndarray
     series: dict
     steady: dict | None
     impulse: float | None
     scales: dict = field(default_factory=dict)
-    processor: float = 0.0
     jump: bool = False
 
 
@@ -54,19 +53,18 @@ class _Stopwatch:
 
     def __init__(self, steps, limit):
         self.steps, self.limit = steps, limit
-        self.spent, self.processor, self.stopped = 0.0, 0.0, False
+        self.spent, self.stopped = 0.0, False
 
     def __call__(self, *where):
         steps = self.steps(*where)
         while True:
-            begun, busy = clock.perf_counter(), clock.process_time()
+            begun = clock.process_time()
             try:
                 block = next(steps, None)
             except np.linalg.LinAlgError as error:
                 raise SolverFailure(str(error)) from error
             finally:
-                self.processor += clock.process_time() - busy
-                self.spent += clock.perf_counter() - begun
+                self.spent += clock.process_time() - begun
             if block is None:
                 return
             if self.spent > self.limit:
@@ -78,7 +76,7 @@ class _Stopwatch:
 def observe(run, steps, method: str, tolerance: float, limit: float = math.inf, samples: int = 400) -> Observed:
     """Integrate a run with a method's generator `steps` (contract of solvers/contract.py) and look at it.
 
-    `limit` (s) of integration; `samples` intervals over the run.  The gap is watched and contacts, sticking and
+    `limit` (s) of processor time; `samples` intervals over the run.  The gap is watched and contacts, sticking and
     collapse are found as in any run, but the clock runs only inside the method.
     """
     watch, sink = _Stopwatch(steps, limit), Sampler(run.duration / samples)
@@ -89,12 +87,10 @@ def observe(run, steps, method: str, tolerance: float, limit: float = math.inf, 
         status = "stopped"
     elif status == Status.OK and not np.all(np.isfinite(outcome.y)):
         status, reason = Status.FAILED, "overflowed"
-    found = _observed(run, status, reason, watch.spent, outcome.counts, sink, outcome.y)
-    found.processor = watch.processor
-    return found
+    return _observed(run, status, reason, watch.spent, outcome.counts, sink, outcome.y)
 
 
-def _observed(run, status, reason, wall, counts, sink, y) -> Observed:
+def _observed(run, status, reason, processor, counts, sink, y) -> Observed:
     columns = [np.concatenate([part[i] for part in sink.parts]) if sink.parts else np.empty(0) for i in range(4)]
     record, steady = run.extrema.records[1], None
     if status == Status.OK and math.isfinite(record[H]) and math.isfinite(record[MOST]):
@@ -114,7 +110,7 @@ def _observed(run, status, reason, wall, counts, sink, y) -> Observed:
     if impulse:
         scales["contact_impulse"] = abs(impulse)
     jump = run.model.interface.film.settle is not None
-    return Observed(status, reason, wall, counts, columns[0], series, steady, impulse, scales, jump=jump)
+    return Observed(status, reason, processor, counts, columns[0], series, steady, impulse, scales, jump=jump)
 
 
 def errors(found: Observed, exact: Observed) -> dict:
