@@ -6,6 +6,7 @@ support under both).
 Phase (deg): how far the tilt of the ring that carries the forcing, relative to its partner, stands behind that
 forcing in the forcing's own frame, against the sense of the shaft's rotation; 0 where it follows at once.
 Three independent methods: formula, harmonic balance, and the equations of motion in time.
+At the scenario's speed also Green's groups, the coning of the stiffest film, and the inertia ratio of a floating rotor.
 **Source** Green (1989), Fig. 8 and Table 1; the phases are the arguments of the same quotients; FMSR, of which he only
 expects that it is better than both, closed_form/response.py.
 """
