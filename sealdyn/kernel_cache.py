@@ -22,8 +22,8 @@ from .extensions import digest_of, is_outside
 PACKAGE = Path(__file__).parent
 # Rooms and files in which kernels stand, and all that these import.
 SOURCES = (
-    "analysis/truncated_heights.py", "closed_form", "dynamics", "faces", "films", "numerics", "quantities.py",
-    "radial_seals", "scene", "solvers", "status.py", "unit_names.py", "units.py",
+    "closed_form", "dynamics", "faces", "films", "numerics", "quantities.py", "radial_seals", "scene", "solvers",
+    "status.py", "unit_names.py", "units.py",
 )  # fmt: skip
 PREFIX, NEWEST = "sealdyn-kernels-", 3
 # Called with 1 as numba begins to compile a kernel that is not kept, with -1 as it ends; one may need another first.

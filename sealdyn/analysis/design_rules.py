@@ -30,15 +30,10 @@ from .seal_figures import (
     other_seals,
     resonances,
 )
+from .seal_types import BALANCE, RUNOUT, SPEEDS, TRAVEL, Duty, seal_type_finding
 
 GUIDE = "Hayden & Keller, NASA CR-120997 (1974)"
 CC_PER_H = 1e-6 / 3600
-# Sliding speed (m/s) up to which other seals go; of ft/min rounded in print.
-OTHER_SEALS = {
-    "a conventional lip seal": 1220.0 / 60,
-    "a hydrodynamic lip seal": 2135.0 / 60,
-    "a circumferential seal": 4550.0 / 60,
-}
 SPRINGS = {"wave_washer": "a wave washer takes", "coil": "coil springs take", "bellows": "bellows take"}
 # Of the table's face width: how near counts as that width is not the guide's.
 NEAR = 0.1
@@ -103,10 +98,19 @@ def _sliding_speed(seal: Seal, limit) -> Finding:
     sentence = f"sliding speed {60 * speed:.4g} m/min at the mean diameter, face seals go up to {60 * limit:.0f} m/min"
     if speed > limit:
         sentence += ": more is possible with proper cooling"
-    suited = [f"{name} (up to {60 * most:.0f} m/min)" for name, most in OTHER_SEALS.items() if speed <= most]
-    if suited:
-        sentence += f"; this speed would also suit {', '.join(suited)}"
-    return limit_finding(sentence, speed, most=limit, beyond=Verdict.NOTE, also_suited=suited)
+    return limit_finding(sentence, speed, most=limit, beyond=Verdict.NOTE)
+
+
+def _seal_type(seal: Seal, limit) -> Finding:
+    """Pass unless something goes beyond a face seal; which other types would do."""
+    if seal.scene.film.gas is not None:
+        return other_seals("the film is a gas")
+    asked, diameter, runout = seal.application, seal.application.shaft_diameter, seal.application.shaft_runout
+    total = (
+        None if runout is None and asked.eccentricity is None else 0.5 * (runout or 0.0) + (asked.eccentricity or 0.0)
+    )
+    duty = Duty(seal.sliding_speed, seal.sealed_pressure, runout, total, asked.axial_displacement, diameter)
+    return seal_type_finding(duty, "face seal")
 
 
 def _runout(seal: Seal, limit) -> Finding:
@@ -400,12 +404,10 @@ def _life(seal: Seal, limit) -> Finding:
 RUN, LOAD_SUPPORT, WEAR = "sealdyn run FILE", "sealdyn study load-support FILE", "sealdyn study wear FILE"
 EQUILIBRIUM = "sealdyn study equilibrium FILE"
 RULES = {
-    "axial_travel": Rule(
-        _axial_travel, {"wave_washer": 0.76e-3, "coil": 1.27e-3, "bellows": 1.27e-3}, "m", "axial displacement"
-    ),
+    "axial_travel": Rule(_axial_travel, TRAVEL, "m", "axial displacement"),
     # Sealed pressure with a closing area not less than the face, and with less.
     "balance": Rule(
-        _balance, (68.9e4, 689e4), "Pa",
+        _balance, BALANCE, "Pa",
         "100 psi unbalanced; the guide prints the balance, a pure number, once in N/m^2", EQUILIBRIUM,
     ),
     "coking": Rule(_coking, 505.0, "K", "lubricants coke near 505 K"),
@@ -443,12 +445,11 @@ RULES = {
     "pressure_velocity": Rule(
         _pressure_velocity, None, "Pa m/s", "no limit of materials is taken from the guide", WEAR
     ),
-    # Up to a sliding speed (m/min), total indicator reading (m).
-    "runout": Rule(_runout, ((1522.0, 0.508e-3), (3044.0, 0.38e-3), (6090.0, 0.254e-3)), "m", "table 3.8"),
+    "runout": Rule(_runout, RUNOUT, "m", "table 3.8"),
     "seal_temperature": Rule(
         _seal_temperature, {"nitrile": 380.0, "silicone": 450.0, "fluoroelastomer": 477.0}, "K", "table 3.7"
     ),
+    "seal_type": Rule(_seal_type, None, "m/s", "tables 3.1 to 3.4 and 3.8"),
     "shaft_resonance": Rule(_shaft_resonance, None, "Hz", "rotation 3 to 350 Hz", "sealdyn study campbell FILE"),
-    # 20 000 ft/min.
-    "sliding_speed": Rule(_sliding_speed, 6096.0 / 60, "m/s", "tables 3.1 to 3.4 for the other seals"),
+    "sliding_speed": Rule(_sliding_speed, SPEEDS["face seal"], "m/s", "20 000 ft/min"),
 }  # fmt: skip

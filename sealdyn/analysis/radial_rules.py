@@ -11,21 +11,21 @@ from ..scene.application import RadialApplication
 from ..scene.radial import RadialScene
 from .design_rules import Rule, rows
 from .seal_figures import Finding, Verdict, limit_finding, other_seals
-
-FOOT_PER_MINUTE, PSI = 0.3048 / 60.0, 6894.757
-# Table 3.2: total eccentricity (m) of lip seals without pressure, and the speed (m/s) that it allows.
-LIP_ECCENTRICITY = np.array([0.381e-3, 0.254e-3, 0.203e-3, 0.178e-3])
-LIP_SPEED = np.array([1000.0, 2000.0, 3000.0, 4000.0]) * FOOT_PER_MINUTE
-# Table 3.1: pressure (Pa) of lip seals, and the speed (m/s) that it allows.
-LIP_PRESSURE = np.array([1.0, 3.0, 5.0]) * PSI
-LIP_PRESSURE_SPEED = np.array([3000.0, 2000.0, 1500.0]) * FOOT_PER_MINUTE
-# Table 3.3: the same of hydrodynamic lips; section 3.1.4: the eccentricity (m) below which they work.
-RIBBED_PRESSURE, RIBBED_SPEED = np.array([6.89e3, 20.6e3, 34.4e3]), np.array([1830.0, 1220.0, 610.0]) / 60.0
-RIBBED_ECCENTRICITY = 0.127e-3
-# Table 3.4: runout (m, total indicator reading) of circumferential seals without pressure, and the speed (m/s) that it
-# allows, in the only order that falls: the rows of the scan are shuffled; 1830 m/min is 6000 ft/min.
-SEGMENT_RUNOUT = np.array([0.0254e-3, 0.127e-3, 0.254e-3, 0.381e-3, 0.508e-3])
-SEGMENT_SPEED = np.array([4550.0, 3660.0, 2440.0, 1830.0, 1220.0]) / 60.0
+from .seal_types import (
+    LIP_ECCENTRICITY,
+    LIP_PRESSURE,
+    LIP_PRESSURE_SPEED,
+    LIP_SPEED,
+    RIBBED_ECCENTRICITY,
+    RIBBED_PRESSURE,
+    RIBBED_SPEED,
+    SEGMENT_PRESSURE,
+    SEGMENT_RUNOUT,
+    SEGMENT_SHARE,
+    SEGMENT_SPEED,
+    Duty,
+    seal_type_finding,
+)
 
 
 def findings(scenario: Scenario) -> list[dict]:
@@ -123,28 +123,45 @@ def _hang_up(scene, limit) -> Finding:
     return limit_finding(sentence, followers.friction, most=followers.preload * (1.0 - 1e-12))
 
 
+def _seal_type(own: str):
+    """Rule of a radial seal of its `own` type: its axial travel is free."""
+
+    def judge(scene, limit) -> Finding:
+        shaft = scene.shaft
+        duty = Duty(
+            surface_speed(scene), scene.seal.pressure_difference, 2.0 * shaft.eccentricity,
+            shaft.eccentricity + shaft.offset, diameter=2.0 * shaft.radius,
+        )  # fmt: skip
+        return seal_type_finding(duty, own)
+
+    return judge
+
+
 def _other_lips(sentence: str):
     return lambda scene, limit: other_seals(sentence)
 
 
-FOLLOW = "sealdyn study followability FILE"
+FOLLOW, TYPES = "sealdyn study followability FILE", "tables 3.1 to 3.4 and 3.8"
 LIP = {
     "lip_eccentricity": Rule(_other_lips("section 3.1.4 is of hydrodynamic lips"), None, "m", "section 3.1.4", FOLLOW),
     "lip_load": Rule(_lip_load, (87.5, 123.0), "N/m", "lip load of conventional lips", FOLLOW),
     "lip_pressure": Rule(_lip_pressure, (LIP_PRESSURE, LIP_PRESSURE_SPEED), "m/s", "table 3.1"),
     "lip_speed": Rule(_lip_speed, (LIP_ECCENTRICITY, LIP_SPEED), "m/s", "table 3.2", FOLLOW),
+    "seal_type": Rule(_seal_type("conventional lip seal"), None, "m/s", TYPES),
 }
 RIBBED_LIP = {
     "lip_eccentricity": Rule(_lip_eccentricity, RIBBED_ECCENTRICITY, "m", "section 3.1.4", FOLLOW),
     "lip_load": Rule(_lip_load, (52.5, 70.0), "N/m", "lip load of hydrodynamic lips", FOLLOW),
     "lip_pressure": Rule(_lip_pressure, (RIBBED_PRESSURE, RIBBED_SPEED), "m/s", "table 3.3"),
     "lip_speed": Rule(_other_lips("table 3.2 is of conventional lips"), None, "m/s", "table 3.2", FOLLOW),
+    "seal_type": Rule(_seal_type("hydrodynamic lip seal"), None, "m/s", TYPES),
 }
 CIRCUMFERENTIAL = {
     "axial_load": Rule(_axial_load, (50.0, 90.0), "N/m", "axial load about 70 N/m", FOLLOW),
     "garter_load": Rule(_garter_load, (17.5, 35.0), "N/m", "radial garter load 17.5 to 35 N/m", FOLLOW),
     "hang_up": Rule(_hang_up, None, "N", "friction on the case flange", "sealdyn run FILE"),
-    "segment_pressure": Rule(_segment_pressure, 6890.0, "Pa", "below 0.689 N/cm^2"),
-    "segment_runout": Rule(_segment_runout, 0.0005, "m", "shaft runout below 0.0005 of the diameter", FOLLOW),
+    "seal_type": Rule(_seal_type("circumferential seal"), None, "m/s", TYPES),
+    "segment_pressure": Rule(_segment_pressure, SEGMENT_PRESSURE, "Pa", "below 0.689 N/cm^2"),
+    "segment_runout": Rule(_segment_runout, SEGMENT_SHARE, "m", "shaft runout below 0.0005 of the diameter", FOLLOW),
     "segment_speed": Rule(_segment_speed, (SEGMENT_RUNOUT, SEGMENT_SPEED), "m/s", "table 3.4", FOLLOW),
 }

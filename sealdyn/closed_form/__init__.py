@@ -13,6 +13,7 @@ from .film import (
     aligned_opening_force,
     film_coefficients,
     narrow_seal_opening_force,
+    optimum_coning,
     radial_film_coefficients,
 )
 from .green_1989 import (
@@ -20,6 +21,7 @@ from .green_1989 import (
     GREEN_1989_ROUNDED,
     GREEN_1989_SEAL,
     Published,
+    axial_groups,
     film_groups,
     green_1989_tilt,
     ring_groups,
@@ -61,6 +63,7 @@ __all__ = [
     "TiltingRing",
     "aligned_leakage",
     "aligned_opening_force",
+    "axial_groups",
     "axial_mode_stable",
     "centrifugal_pressure",
     "contact_tilt",
@@ -83,6 +86,7 @@ __all__ = [
     "fmsr_relative_tilts",
     "green_1989_tilt",
     "narrow_seal_opening_force",
+    "optimum_coning",
     "poiseuille_reynolds",
     "radial_film_coefficients",
     "ring_groups",

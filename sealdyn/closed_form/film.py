@@ -81,6 +81,18 @@ def film_coefficients(
     return FilmCoefficients(tilt_stiffness, tilt_damping, axial_stiffness, 2 * tilt_damping / mean_radius**2)
 
 
+def optimum_coning(low_radius: Real, high_radius: Real, thinnest: Real) -> Real:
+    """Coning (rad, of a film that widens towards the higher pressure) at which the narrow film is stiffest against
+    tilt: `2 C r_h / (r_l L)`, C the `thinnest` film (m), that at the edge `low_radius` (m) of the lower pressure, and
+    `high_radius` (m) the other.
+
+    Inwards it is `b = 2 / (R (1 - R))` in units of C/r_o and the stiffness there `pi dp r_i^2 (r_o^2 - r_i^2)/(16 C)`.
+    **Source** dK_f/d(coning) = 0 of `film_coefficients`, derived here; Green's (1989) seal, b = 12.5, stands there.
+    **Valid** as `film_coefficients`, the thinnest film kept.
+    """
+    return 2 * thinnest * high_radius / (low_radius * np.abs(np.subtract(high_radius, low_radius)))
+
+
 def narrow_seal_opening_force(
     inner_radius: Real,
     outer_radius: Real,

@@ -65,6 +65,18 @@ def ring_groups(*, speed: Real, viscosity: Real, inner_radius: Real, outer_radiu
     }
 
 
+def axial_groups(*, speed: Real, viscosity: Real, inner_radius: Real, outer_radius: Real, clearance: Real,
+                 mass: Real | None = None, stiffness: Real, damping: Real) -> dict[str, Real]:  # fmt: skip
+    """Groups of axial motion, 1 each: `stiffness` (N/m) and `damping` (N s/m) of a film or a support, and the `mass`
+    (kg) of a ring where it is one.
+
+    **Source** Green (1989), `m = m* w^2 C / (S r_o^2)`, and so stiffness in S r_o^2 / C.  **Valid** as `film_groups`.
+    """
+    unit = seal_parameter(speed, viscosity, inner_radius, outer_radius, clearance) * outer_radius**2 / clearance
+    found = {"stiffness": stiffness / unit, "damping": damping * speed / unit}
+    return found if mass is None else found | {"mass": mass * speed**2 / unit}
+
+
 SOURCE = "Green (1989), Table 1"
 
 

@@ -30,7 +30,7 @@ from ..faces.geometry import (
 )
 from ..films import film_named, film_of
 from ..numerics.piecewise_linear import initially
-from ..scene.contact import contact_thresholds
+from ..scene.contact import contact_thresholds, finish
 from ..scene.film import Coefficients, aligned_gaps, cells_of, coned
 from ..scene.patterns import grooves_of, waves_of
 from ..scene.scene import Closing, SceneError
@@ -362,7 +362,7 @@ def asperity_steps(scene, clearance, change):
     do nothing to them, any."""
     length = _analytic(scene, clearance, change, contact_thresholds(scene.contact)[1])[1]
     # Few asperities reach far: how many changes by a factor over one rms.
-    length = STEP * min(length, scene.contact.roughness)
+    length = STEP * min(length, finish(scene.contact))
     tilt = length / scene.film.outer_radius
     return length, tilt, length, tilt
 

@@ -26,7 +26,8 @@ from functools import lru_cache
 import numpy as np
 
 from ..numerics.kernel import inner_kernel, outer_kernel, value_kernel
-from ..scene.contact import Contact, contact_thresholds
+from ..scene.contact import HALF_HEIGHT as HALF
+from ..scene.contact import Contact, contact_thresholds, finish, plateau_height
 from ..scene.patterns import land_shares
 from .geometry import (
     COLLAPSE,
@@ -47,6 +48,7 @@ from .geometry import (
     ORDER_LIST,
     ORDERS,
     OUTER_RADIUS,
+    PLATEAU,
     PROFILE,
     PROFILE_RADII,
     SPIN_DIFFERENCE,
@@ -77,6 +79,7 @@ from .roughness import (
     annulus,
     christensen_series,
     gaussian_series,
+    plateau_share,
     pressed,
     scaled,
     stored,
@@ -85,7 +88,7 @@ from .roughness import (
 from .waviness import lay_waves, waves
 
 # Gauss points of a panel around the circle: error below 1e-10 of the load (tests/convergence).
-ANGLE_POINTS = {"christensen": 12, "greenwood-williamson": 20}
+ANGLE_POINTS = {"christensen": 12, "greenwood-williamson": 20, "plateaus": 12}
 # Even angles to each wave of wavy faces.
 ANGLES_PER_WAVE = 128
 _gauss = lru_cache(maxsize=16)(np.polynomial.legendre.leggauss)
@@ -97,9 +100,15 @@ def lay_asperities(contact: Contact, face: np.ndarray, points: int | None = None
     `lands`: radii (m) of a face with grooves and the share of land between them, as of patterns.land_shares.
     """
     points = points or ANGLE_POINTS[contact.law]
+    face[FLOOR], top, bottom = contact_thresholds(contact)
+    face[TOUCH], face[COLLAPSE], face[HALF_HEIGHT] = top, bottom, HALF * finish(contact)
+    face[PLATEAU], span = plateau_height(contact), top - bottom
     if contact.law == "christensen":
         load = scaled(christensen_series(), contact.compressive_strength)
         area = christensen_series()
+    elif contact.law == "plateaus":
+        area, span = scaled(christensen_series(), plateau_share(contact.truncation)), 2.0 * face[HALF_HEIGHT]
+        load = scaled(area, contact.compressive_strength)
     else:
         number = contact.asperity_density * contact.asperity_radius * contact.roughness
         stiff = 4.0 / 3.0 * number * contact.modulus * math.sqrt(contact.roughness / contact.asperity_radius)
@@ -107,15 +116,13 @@ def lay_asperities(contact: Contact, face: np.ndarray, points: int | None = None
     # Exact for u^4 Q(v) r^2, and for the energy u^5 R(v) r; with a profile also for u^4 Q(v) r^3.
     radial = (4 + int(load[0]) + 2 + int(face[PROFILE] > 0)) // 2 + 1
     k = np.zeros(NODES + 2 * (radial + points))
-    face[FLOOR], top, bottom = contact_thresholds(contact)
-    face[TOUCH], face[COLLAPSE], face[HALF_HEIGHT] = top, bottom, -bottom
-    k[TOP], k[SPAN] = top, top - bottom
+    k[TOP], k[SPAN] = top, span
     k[SHEAR_OF_AREA] = contact.shear_strength or 0.0
     if contact.shear_strength is None:
         k[SHEAR_OF_LOAD] = 0.1 if contact.friction_coefficient is None else contact.friction_coefficient
     k[WEAR_PER_LOAD] = contact.stator_wear_coefficient + contact.rotor_wear_coefficient
     k[FACE_AREA] = math.pi * (face[OUTER_RADIUS] ** 2 - face[INNER_RADIUS] ** 2)
-    k[LOAD:AREA], k[AREA:ENERGY], k[ENERGY:ANNULI] = load, area, stored(load, top - bottom)
+    k[LOAD:AREA], k[AREA:ENERGY], k[ENERGY:ANNULI] = load, area, stored(load, span)
     if lands is not None:
         radii, shares = lands
         k[ANNULI] = len(shares)

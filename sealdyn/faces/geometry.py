@@ -36,9 +36,11 @@ CONING_CHANGE, CONING_RATE = 30, 31
 GAP_STATE_SIZE = 32
 
 # Leading slots of every film's block `f`: the faces.  A film's own numbers follow.
-INNER_RADIUS, OUTER_RADIUS, CLEARANCE, CONING, FLOOR, TILT_AT_MEAN, PLANAR, TOUCH, COLLAPSE, HALF_HEIGHT = range(10)
+INNER_RADIUS, OUTER_RADIUS, CLEARANCE, CONING, FLOOR, TILT_AT_MEAN, PLANAR, TOUCH, COLLAPSE, HALF_HEIGHT, PLATEAU = (
+    range(11)
+)
 # The profile: how many radii (0: none), and room for the radii and the depths.
-PROFILE, PROFILE_RADII = 10, 11
+PROFILE, PROFILE_RADII = 11, 12
 PROFILE_DEPTHS = PROFILE_RADII + MOST_NODES
 # The waves (faces/waviness.py): how many (0: none), how many different orders, room for these, and a row per wave.
 WAVES = PROFILE_DEPTHS + MOST_NODES
@@ -50,7 +52,8 @@ FACE_SIZE = WAVE_ROWS + WAVE_ROW * MOST_WAVES
 def face_parameters(film, clearance: float) -> np.ndarray:
     """The face part of a film's parameter block, shape (FACE_SIZE,), of a `Film` table and a `clearance` (m): radii and
     clearance in m, coning in rad, the floor of the film thickness in m, two flags, the thickness at which the faces
-    touch and the one at which the run ends (m), half the height of the asperities (m, 0: smooth), the profile (m); with
+    touch and the one at which the run ends (m), half the height of the asperities (m, 0: smooth) and where they stand
+    on plateaus the film between these (m), the profile (m); with
     contact these are laid by faces/contact.py, and faces/waviness.py lays the waves."""
     f = np.zeros(FACE_SIZE)
     f[:PROFILE] = (
@@ -63,6 +66,7 @@ def face_parameters(film, clearance: float) -> np.ndarray:
         film.geometry == "planar",
         -np.inf,
         film.floor * clearance,
+        0.0,
         0.0,
     )
     if film.profile is not None:

@@ -1,8 +1,12 @@
-"""Rough faces at a mean film h: share in contact, mean film, the two contact laws as polynomials, and their integrals
+"""Rough faces at a mean film h: share in contact, mean film, the contact laws as polynomials, and their integrals
 over an annulus whose gap is linear in r and tilted.
 
 **Source** Lebeck, Teale & Pierce, ONR ME-95(79)ONR-414-1 (1979), ch. 2 (Christensen's polynomial heights);
-Greenwood & Williamson, *Proc. R. Soc. A* 295 (1966), eqs. 10-12 (Gaussian heights).
+Greenwood & Williamson, *Proc. R. Soc. A* 295 (1966), eqs. 10-12 (Gaussian heights).  Plateaus: the report's Gaussian
+heights s of both faces that end at t s touch on the share Phi(-t)^2 of the area once the mean film is below 2 t s,
+however much below; its load begins with a jump.  Here plateaus have a finish of their own, Christensen's heights, on
+which they meet: the jump is its limit, and load, area and energy are those of Christensen's law on that share.  What
+slopes from a plateau into a valley does not touch.
 
 A law is a *series*: with u = 0 where the asperities first meet and u = 1 where all are flattened it is u^4 Q(v),
 v = 2u - 1, so that it begins smoothly; beyond u = 1 it goes on as a cubic at most.
@@ -68,6 +72,15 @@ def gaussian_overlap(n: float, d):
     s = np.asarray(d, dtype=float)[..., None] + w * w
     density = np.exp(-0.5 * s * s) / math.sqrt(2.0 * math.pi)
     return density @ (math.sqrt(14.0) * weight * w ** (2.0 * n + 1.0))
+
+
+def plateau_share(truncation: float) -> float:
+    """Share of the area on which both of two faces with Gaussian heights are cut off at `truncation` of their own rms
+    heights above the mean plane.
+
+    **Source** Lebeck et al. (1979), ch. 2, `Phi(-t/s)^2`.
+    """
+    return (0.5 * math.erfc(truncation / math.sqrt(2.0))) ** 2
 
 
 @lru_cache(maxsize=1)

@@ -349,10 +349,12 @@ def _follow(kind: type, raw: Any, location: tuple, keep_last: bool) -> tuple[lis
 FACE_RULES = (
     "axial_travel", "balance", "coking", "face_pressure", "face_width", "film_thickness", "finish", "flatness",
     "gear_resonance", "hang_up", "heat", "leakage", "life", "lubricant_side", "misalignment", "pressure_velocity",
-    "runout", "seal_temperature", "shaft_resonance", "sliding_speed",
+    "runout", "seal_temperature", "seal_type", "shaft_resonance", "sliding_speed",
 )  # fmt: skip
-LIP_RULES = ("lip_eccentricity", "lip_load", "lip_pressure", "lip_speed")
-CIRCUMFERENTIAL_RULES = ("axial_load", "garter_load", "hang_up", "segment_pressure", "segment_runout", "segment_speed")
+LIP_RULES = ("lip_eccentricity", "lip_load", "lip_pressure", "lip_speed", "seal_type")
+CIRCUMFERENTIAL_RULES = (
+    "axial_load", "garter_load", "hang_up", "seal_type", "segment_pressure", "segment_runout", "segment_speed",
+)  # fmt: skip
 
 
 def unknown_rules(acknowledged, known: tuple[str, ...] = FACE_RULES) -> list[tuple[str, str, str]]:

@@ -39,6 +39,10 @@ def scene_errors(scene, run) -> list[SceneError]:
     bad += _broken(_seals_alike, scene)
     if scene.contact:
         bad += [SceneError(f"contact.{key}", *words) for key, *words in contact_errors(scene.contact)]
+        options = scene.film.reynolds
+        if scene.contact.law == "plateaus" and options and options.roughness == "patir-cheng":
+            found = f'"{options.roughness}", with contact.law = "{scene.contact.law}"'
+            bad.append(SceneError("film.reynolds.roughness", found, '"christensen": the film between the plateaus'))
     if not (scene.stator.support or scene.rotor.support):
         expected = "[rotor.support] or [stator.support]: the ring that floats"
         bad.append(SceneError("rotor.support", "no support on either ring", expected))

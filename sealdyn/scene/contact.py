@@ -20,10 +20,11 @@ class Contact(Strict):
     roughness: Roughness
     """Composite rms roughness of both faces; they meet at 3 rms, Gaussian heights at 5 (finish of each face about 0.1
     um, NASA CR-120997)."""
-    law: Literal["christensen", "greenwood-williamson"] = "christensen"
-    """Christensen's bounded height distribution, or Greenwood and Williamson's Gaussian one."""
+    law: Literal["christensen", "greenwood-williamson", "plateaus"] = "christensen"
+    """Christensen's bounded height distribution, Greenwood and Williamson's Gaussian one, or Gaussian heights that are
+    worn to plateaus."""
     compressive_strength: Stress | None = None
-    """Of the softer face, for "christensen"."""
+    """Of the softer face, for "christensen" and "plateaus"."""
     friction_coefficient: Share | None = None
     """Friction over contact load; 0.1 without it and without `shear_strength` (carbon graphite that runs dry: 0.1 to
     0.25, NASA CR-120997)."""
@@ -39,11 +40,16 @@ class Contact(Strict):
     """Radius of the peaks, for "greenwood-williamson"."""
     modulus: Stress | None = None
     """Composite elastic modulus, for "greenwood-williamson"."""
+    truncation: float | None = None
+    """Height at which each face is worn flat, over its mean plane and in its own rms heights, for "plateaus"."""
+    plateau_roughness: Roughness | None = None
+    """Composite rms roughness of the plateaus themselves, which meet at 3 of it, for "plateaus"."""
 
 
 LAW_KEYS = {
     "christensen": ("compressive_strength",),
     "greenwood-williamson": ("asperity_density", "asperity_radius", "modulus"),
+    "plateaus": ("compressive_strength", "truncation", "plateau_roughness"),
 }
 
 
@@ -51,19 +57,22 @@ def contact_errors(contact: Contact) -> list[tuple[str, str, str]]:
     """What cannot be in a `[contact]` table: (key, found, expected), in the order of the table."""
     bad = []
     wanted = ("roughness", *LAW_KEYS[contact.law])
-    for law, keys in LAW_KEYS.items():
-        if law != contact.law:
-            bad += [
-                (key, f"a value, with law = {contact.law!r}", f'nothing, or law = "{law}"')
-                for key in keys
-                if getattr(contact, key) is not None
-            ]
+    for key in dict.fromkeys(key for keys in LAW_KEYS.values() for key in keys):
+        if key not in wanted and getattr(contact, key) is not None:
+            laws = " or ".join(f'"{law}"' for law, keys in LAW_KEYS.items() if key in keys)
+            bad.append((key, f"a value, with law = {contact.law!r}", f"nothing, or law = {laws}"))
     for key in wanted:
         value = getattr(contact, key)
         if value is None:
             bad.append((key, "nothing", f'a value > 0: law = "{contact.law}" needs it'))
         elif not 0.0 < value < math.inf:
             bad.append((key, f"{value:g}", "a value > 0"))
+    if contact.law == "plateaus" and not bad:
+        if contact.truncation > REACH:
+            bad.append(("truncation", f"{contact.truncation:g}", f"at most {REACH:g}: beyond it nothing is worn flat"))
+        elif plateau_height(contact) <= HALF_HEIGHT * contact.plateau_roughness:
+            most = f"less than {plateau_height(contact) / HALF_HEIGHT:g} m: plateaus are smoother than they are high"
+            bad.append(("plateau_roughness", f"{contact.plateau_roughness:g} m", most))
     if contact.friction_coefficient is not None and contact.shear_strength is not None:
         bad.append(("shear_strength", "a value beside friction_coefficient", "one of the two"))
     for key in ("friction_coefficient", "shear_strength", "stator_wear_coefficient", "rotor_wear_coefficient"):
@@ -71,6 +80,17 @@ def contact_errors(contact: Contact) -> list[tuple[str, str, str]]:
         if value is not None and not 0.0 <= value < math.inf:
             bad.append((key, f"{value:g}", "a value >= 0"))
     return bad
+
+
+def plateau_height(contact: Contact) -> float:
+    """Mean film h (m) at which the plateaus of both faces meet, each with its share 1/sqrt(2) of the rms roughness; 0
+    of another law."""
+    return math.sqrt(2.0) * contact.truncation * contact.roughness if contact.law == "plateaus" else 0.0
+
+
+def finish(contact: Contact) -> float:
+    """Rms roughness (m) of what touches: of the plateaus of faces that are worn to them."""
+    return contact.plateau_roughness if contact.law == "plateaus" else contact.roughness
 
 
 def contact_thresholds(contact: Contact) -> tuple[float, float, float]:
@@ -81,8 +101,12 @@ def contact_thresholds(contact: Contact) -> tuple[float, float, float]:
                 the edges it stays linear in r, so where one of them is below, places above it are thicker, too.
     touch       where the first asperities meet: c; 5 rms for Gaussian heights, whose load there is 1e-7 of that at 0.
     collapse    -c: all asperities are flattened, and the law has nothing more to say.
+
+    Plateaus: (where they meet, where their own asperities do, 0: they have worn through to the mean planes).
     """
-    c = HALF_HEIGHT * contact.roughness
+    c, plateau = HALF_HEIGHT * contact.roughness, plateau_height(contact)
+    if plateau:
+        return plateau, plateau + HALF_HEIGHT * contact.plateau_roughness, 0.0
     return 0.6 * c, c if contact.law == "christensen" else REACH * contact.roughness, -c
 
 

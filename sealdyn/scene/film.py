@@ -187,8 +187,9 @@ class Reynolds(Strict):
     """Cells around the circle."""
     cavitation: Literal["mass-conserving", "none"] = "mass-conserving"
     """Where the film tears at `cavitation_pressure`, with its liquid kept (over grooves: where aligned); or never."""
-    roughness: Literal["christensen", "none"] = "christensen"
-    """Whether the film flows between the asperities of [contact]."""
+    roughness: Literal["christensen", "patir-cheng", "none"] = "christensen"
+    """How the film flows between the asperities of [contact]: by the mean cube of Christensen's heights (over plateaus
+    their own), the same but pressed by Patir and Cheng's factor of isotropic roughness, or not at all."""
     columns: int = 8
     """Over grooves, in place of cells: columns of triangles to a pitch."""
     sectors: int | None = None

@@ -212,6 +212,8 @@ def elastic_errors(scene) -> list[tuple[str, str, str]]:
     if len(scene.stator.waviness) != 1 or scene.rotor.waviness:
         found = f"{len(scene.stator.waviness)} waves of the stator, {len(scene.rotor.waviness)} of the rotor"
         bad.append(("stator.elastic", found, "one [[stator.waviness]], which the load levels, and none of the rotor"))
+    if scene.contact and scene.contact.law != "christensen":
+        bad.append(("contact.law", f'"{scene.contact.law}"', '"christensen" beside a ring that bends'))
     if scene.film.model != "reynolds":
         bad.append(
             ("stator.elastic", f'film.model = "{scene.film.model}"', '"reynolds", whose pressure bends the ring')

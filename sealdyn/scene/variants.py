@@ -217,14 +217,19 @@ def counterpart(scene: Scene) -> Scene:
             axial_runout=rotor.axial_runout,
             waviness=stator.waviness,
             grooves=stator.grooves,
+            body=stator.body,
         )
     else:
         moved = {name: getattr(stator, name) for name in CARRIED + FACE}
         new_rotor = Rotor(**moved, misalignment_phase=stator.misalignment_direction, axial_runout=rotor.axial_runout)
         new_stator = Stator(misalignment=rotor.runout, misalignment_direction=rotor.runout_phase, speed=stator.speed,
-                            waviness=rotor.waviness, grooves=rotor.grooves)  # fmt: skip
+                            waviness=rotor.waviness, grooves=rotor.grooves, body=rotor.body)  # fmt: skip
+    film, heat = scene.film, scene.film.heat
+    if heat is not None:
+        # What cools a ring goes with it.
+        film = replace(film, heat=replace(heat, stator=heat.rotor, rotor=heat.stator))
     start = Initial(rotor=scene.initial.stator, stator=scene.initial.rotor)
-    return replace(scene, rotor=new_rotor, stator=new_stator, initial=start)
+    return replace(scene, film=film, rotor=new_rotor, stator=new_stator, initial=start)
 
 
 def with_both_flexible_rings(scene: Scene) -> Scene:

@@ -9,24 +9,21 @@ from .. import closed_form
 from ..dynamics import modes
 from ..dynamics.equilibrium import resolved_matrices
 from ..dynamics.extrema import H_LEG, H_RADIUS, H_TAU, H_THETA, LEAST, MOST, H
-from ..dynamics.interface import flow_at_rest, rest_state
 from ..dynamics.intervals import constant_and_slope
 from ..dynamics.modes import steady_extremes
 from ..dynamics.run_state import Caution, Concern
-from ..faces.geometry import CONTACT_TORQUE, FLOW_INNER, INNER_PRESSURE, OUTER_PRESSURE, SPIN_DIFFERENCE, TORQUE, TOUCH
+from ..faces.geometry import TOUCH
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE, density_of, gas_of
-from ..scene.patterns import waves_of
 from ..scene.radial import RadialScene
-from ..scene.rings import RING_NAMES, ROTOR, SMALL_TILT, STATOR
+from ..scene.rings import RING_NAMES, ROTOR, STATOR
 from ..scene.variants import uneven_supports
 from ..solvers.contract import Status
 from ..solvers.energy_audit import missing_energy
-from .plausibility import cautions, room_to_open, unit_warnings
+from .margin import aligned_flow, contact_margin, state_at_rest
+from .plausibility import cautions, unit_warnings
 from .stability import found_alone, no_stability, stability
 
-# What ends the growth of the forcing, unless tilts are small no more.
-TOUCHED = "touch"
 ML_PER_H, KG_PER_H = 3.6e9, 3.6e3
 
 
@@ -67,7 +64,7 @@ def parts(scenario, run, plan, outcome, tally, speeds: bool = True) -> dict:
         return otherwise if found is None else found
 
     margin = cache(
-        lambda: extra("contact margin", lambda: _contact_margin(model, at, linear, tilt(), answers), (math.nan, None))
+        lambda: extra("contact margin", lambda: contact_margin(model, at, linear, tilt(), answers), (math.nan, None))
     )
     return {
         "status": outcome.status,
@@ -310,7 +307,9 @@ def _film(model, at, linear, tally, failed):
     unknown = np.full((3, 3), np.nan)
     k, d = (unknown, unknown) if linear is None else (linear.film_k, linear.film_d)
     k, d = resolved_matrices(k, d, closing, model.clearance, radius)
-    aligned = cache(lambda: found_alone(failed, "aligned film", lambda: _aligned(model, at)) or (math.nan, math.nan))
+    aligned = cache(
+        lambda: found_alone(failed, "aligned film", lambda: aligned_flow(model, at)) or (math.nan, math.nan)
+    )
     return {
         "clearance": model.clearance + model.axial_shift(at),
         "leakage": lambda: aligned()[0],
@@ -328,25 +327,10 @@ def _film(model, at, linear, tally, failed):
     }
 
 
-def _at_rest(model, at):
-    """Gap state of the aligned faces where they rest under the conditions `at` the end of the run."""
-    return rest_state(model.scene, model.clearance, at, shift=model.axial_shift(at))[0]
-
-
-def _aligned(model, at):
-    """Leakage (m^3/s, from high to low pressure; as volume of a gas at normal conditions) and friction (W) of these.
-    Raises SceneError where there is no flow."""
-    s = _at_rest(model, at)
-    flow_at_rest(model.interface, s, model.observed)
-    from_high_to_low = -1.0 if s[OUTER_PRESSURE] >= s[INNER_PRESSURE] else 1.0
-    torque = s[TORQUE] + (0.0 if model.contact is None else s[CONTACT_TORQUE])
-    return from_high_to_low * s[FLOW_INNER], torque * s[SPIN_DIFFERENCE]
-
-
 def _exit_mach(model, at):
     """Mach number at which a gas leaves these; None of a film that does not know."""
     film, f = model.observed
-    return film.exit_mach(f, _at_rest(model, at))[1] if film.exit_mach is not None else None
+    return film.exit_mach(f, state_at_rest(model, at))[1] if film.exit_mach is not None else None
 
 
 def _closing(model, at):
@@ -382,36 +366,6 @@ def _answers(segment, at, linear):
     if at is segment.interval:
         return segment.steady_motion()[1]
     return linear.answers(segment.harmonics())
-
-
-def _contact_margin(model, at, linear, tilt, answers):
-    """Factor by which the forcing may grow in linear theory, and what ends it: at "touch" the gap closes at an edge,
-    to the height of the asperities where there are any (0 where they touch without forcing), or before "small tilts"
-    are over (SMALL_TILT), or a "laminar film" or a "slow gas" at the edge that opens; one that is neither at rest has a
-    caution instead.  Unknown of wavy faces, of aligned ones that press with a moment, and of a sweep, which is over
-    in the last segment."""
-    if waves_of(model.scene) or model.scene.housing.sweeps:
-        return math.nan, None
-    face = model.face
-    inner = model.clearance + model.axial_shift(at)
-    outer = inner + (face[3] + model.coning_change(at)) * (face[1] - face[0])
-    height = max(face[TOUCH], 0.0)
-    if min(inner, outer) <= height:
-        return 0.0, TOUCHED
-    if tilt is None or modes.verdict(linear.modes()) != "stable":
-        return math.nan, None
-    most, _, closing, _ = tilt
-    ends, tilted = [(math.inf, None)], modes.tilt_bound(answers())
-    # Without it the margin is that of touch; that it is missing is told beside it.
-    leakage = found_alone([], "leakage", lambda: _aligned(model, at)[0]) or math.nan
-    for gap, radius in ((inner, face[0]), (outer, face[1])):
-        if (reach := radius * most + closing) > 0.0:
-            ends.append(((gap - height) / reach, TOUCHED))
-            # An edge opens by as much as it closes.
-            ends += [(room / reach, name) for room, name in room_to_open(model, leakage, radius, gap)]
-    if tilted > 0.0:
-        ends.append((SMALL_TILT / tilted, "small tilts"))
-    return min(ends, key=lambda end: end[0])
 
 
 def _closed_form(segment, at, linear, tilt):

@@ -26,6 +26,7 @@ from ..scene.checks import unused
 from ..scene.contact import touch_height
 from ..scene.rings import SMALL_TILT
 from ..scene.scene import SceneError
+from ..simulation.margin import limit_of_forcing
 from ..simulation.simulate import simulate_in_memory
 from ..status import Status
 from . import Info
@@ -56,6 +57,13 @@ WORDS = {"pressure": "contact pressure", "load": "load on the asperities", "wear
 # any, how well means settle, how near the share the value found comes; a ramp's end, in linear onsets, and turns.
 LARGEST_RUNOUT, FIRST, STEP, CRUSHED, SETTLED, NEAR = 1e-3, 5e-6, 4.0, 10.0, 1e-3, 0.05
 RAMP_TO, RAMPS = 2.5, (12, 24)
+# What ends linear theory.
+ENDS = {
+    "touch": "where it touches",
+    "small tilts": f"where tilts reach {SMALL_TILT:g} rad",
+    "laminar film": "where the film is laminar no more at the edge that opens",
+    "slow gas": "where the gas is slow no more at the edge that opens",
+}
 # Onsets further apart than this are seen on a logarithmic axis only.
 APART = 20.0
 
@@ -108,11 +116,13 @@ def run(scenario, settings, tools) -> Answer:
     numbers = {"key": key, "formula": None, "nonlinear": None, "radius": None, "margin": settings.margin,
               **plain[0], "floored": floored[0], "over": settings.over, "curve": curve}  # fmt: skip
     unit = si_unit(scenario.scene, key)
-    numbers["units"] = dict.fromkeys(("forcing", "formula", "nonlinear", "not_before", "ramps", "allowed/value"), unit)
+    numbers["units"] = dict.fromkeys(
+        ("forcing", "formula", "nonlinear", "not_before", "ramps", "allowed/value", "linear_limit/value"), unit
+    )
     numbers["units"]["allowed/at_rest"] = AT_REST[settings.limit]
     numbers["units"]["value"] = si_unit(scenario.scene, settings.over) if curve else "SI"
     if "failed" in numbers:
-        numbers["status"] = Status.OK if numbers.get("beyond_tilt") else Status.FAILED
+        numbers["status"] = Status.FAILED
     return Answer(numbers, _found(numbers, unit), _tables(numbers), _panels(numbers), _notes(numbers))
 
 
@@ -131,8 +141,8 @@ def brief(row: dict) -> dict:
 
 def onset(scenario, point: dict) -> dict:
     """Linear and nonlinear onset of one scenario; `path` the orbits on the way.  Without a nonlinear onset it says why:
-    `failed`; where that is an onset beyond any small tilt, of linear theory or of the orbits, `beyond_tilt` (rad) is
-    there too."""
+    `failed`; an onset beyond any small tilt, of linear theory or of the orbits, is `beyond_tilt` (rad) and no failure.
+    `linear_limit`: the `value` of the key up to which linear theory stands, and what ends it (`by`)."""
     scenario = with_values(scenario, point["set"])
     floor = min(scenario.scene.film.floor, point["margin"] / 4)
     key, rough = point["key"], touch_height(scenario.scene)
@@ -155,21 +165,26 @@ def onset(scenario, point: dict) -> dict:
               "times_own": times_own(scenario.scene, key, formula),
               "clearance": Model(scene(0.0), 1e-6).clearance}  # fmt: skip
     limit = SMALL_TILT if si_unit(scenario.scene, key) == "rad" else np.inf
-    why = f"beyond any small tilt ({SMALL_TILT:g} rad): the film does not limit {key}"
-    beyond = {"beyond_tilt": SMALL_TILT, "failed": why}
+
+    def stands():
+        return {"linear_limit": limit_of_forcing(lambda value: Model(scene(value), 1e-6), formula)}
+
+    beyond = {"beyond_tilt": SMALL_TILT}
     if formula > limit:
-        return {**result, **beyond}
+        return {**result, **beyond, **stands()}
     if (result["times_own"] or 0.0) > point["most"]:
-        return {**result, "failed": f"beyond {point['most']:g} times the scenario's own nothing is followed"}
+        why = f"beyond {point['most']:g} times the scenario's own nothing is followed"
+        return {**result, "failed": why, **stands()}
     if Model(scene(0.0), 1e-6).interface.stores:
-        return {**result, **ramped(scenario, key, formula, point["margin"], rough / result["clearance"])}
+        found = ramped(scenario, key, formula, point["margin"], rough / result["clearance"])
+        return {**result, **found, **(stands() if "nonlinear" not in found else {})}
     follower = Follower(scene, point["margin"], min(scenario.run.accuracy, 1e-7), touch=rough)
     try:
         value = follower.follow(formula, point["tolerance"], limit)
     except NoOrbit as reason:
         # Orbits open the gap as they tilt it: what linear theory sees touch may not, at any small tilt.
         ended = follower.path and follower.path[-1]["forcing"] == limit
-        return {**result, **follower.told(), **(beyond if ended else {"failed": str(reason)})}
+        return {**result, **follower.told(), **({**beyond, **stands()} if ended else {"failed": str(reason)})}
     clearance = follower.path[-1]["clearance"]
     result |= {
         "nonlinear": value,
@@ -342,16 +357,25 @@ def linear_films(scene, key: str, rough: float, own) -> dict:
 def _found(numbers, unit: str) -> str:
     """The onset, or what linear theory says and why the nonlinear film does not."""
     key, formula = numbers["key"], numbers["formula"]
-    if "failed" not in numbers:
+    if "failed" not in numbers and not numbers.get("beyond_tilt"):
         if numbers["nonlinear"] == 0.0:
             return f"The asperities touch without any {key}{_allows(numbers, unit)}."
         if numbers.get("not_before"):
             return (f"Linear theory touches at {key} = {in_words(unit, formula)}; in time the faces do not touch up to "
-                    f"{in_words(unit, numbers['not_before'])}.")  # fmt: skip
+                    f"{in_words(unit, numbers['not_before'])}{_stands(numbers, unit)}.")  # fmt: skip
         return f"The faces first touch at {key} = {in_words(unit, numbers['nonlinear'], digits=6)}."
     if formula is None:
         return numbers["failed"]
-    return f"Linear theory touches at {key} = {in_words(unit, formula)}; undecided beyond: {numbers['failed']}."
+    touches = f"inear theory touches at {key} = {in_words(unit, formula)}"
+    if numbers.get("beyond_tilt"):
+        return f"The faces touch at no small tilt: l{touches}{_stands(numbers, unit)}."
+    return f"L{touches}; undecided beyond: {numbers['failed']}{_stands(numbers, unit)}."
+
+
+def _stands(numbers, unit: str) -> str:
+    """Up to which forcing linear theory stands, and what ends it."""
+    found = numbers.get("linear_limit")
+    return f"; linear theory stands up to {in_words(unit, found['value'])}, {ENDS[found['by']]}" if found else ""
 
 
 def _allows(numbers, unit: str) -> str:
@@ -399,7 +423,7 @@ def _notes(numbers) -> list[str]:
         return ["Whether the seal keeps the orbit at the onset is not known: the film stores."]
     if (numbers.get("multiplier") or 0.0) > 1.0:
         return ["The orbit at the onset is unstable: the seal leaves it before it touches."]
-    if "failed" in numbers and numbers.get("path"):
+    if numbers["nonlinear"] is None and numbers.get("path"):
         reached = in_words(numbers["units"]["forcing"], max(numbers["path"]["forcing"]))
         return [f"Orbits were followed to {reached}."]
     return []
@@ -426,7 +450,7 @@ def _panels(numbers) -> list[Panel]:
                             [Series("line", x, share, style="blue circle small")], levels))  # fmt: skip
     if numbers["curve"]:
         panels.append(_curve_panel(numbers))
-    why = "touching when aligned" if numbers["nonlinear"] == 0.0 else numbers.get("failed") or "no orbit followed"
+    why = "touching when aligned" if numbers["nonlinear"] == 0.0 else numbers.get("failed") or "at no small tilt"
     return panels or [Panel("Smallest film thickness", note=why)]
 
 

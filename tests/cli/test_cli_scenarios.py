@@ -22,6 +22,12 @@ COARSER = {
     "dry_gas_start": {"film.gas_reynolds.columns": 6},
     "lebeck_n6": {"film.reynolds.cells_r": 6, "film.reynolds.cells_theta": 270},
     "lebeck_n3": {"film.reynolds.cells_r": 6, "film.reynolds.cells_theta": 135},
+    "lebeck_plateaus": {
+        "film.reynolds.cells_r": 6,
+        "film.reynolds.grid_accuracy": 0.9,
+        "run.turns": 0.5,
+        "run.accuracy": 0.05,
+    },
     "lebeck_elastic": {"film.reynolds.cells_r": 6},
     "lebeck_driven": {"film.reynolds.cells_r": 6, "film.reynolds.cells_theta": 180},
 }

@@ -9,19 +9,21 @@ import pytest
 from scipy.linalg import eig
 
 from sealdyn.analysis.sources import lebeck_1979, lebeck_1979_plateaus
-from sealdyn.analysis.truncated_heights import load_shares, plateaus
 from sealdyn.dynamics.film_modes import even
-from sealdyn.dynamics.interface import opening_parts, with_cells
+from sealdyn.dynamics.interface import Interface, flow_at_rest, opening_parts, rest_state, with_cells
 from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.run_state import RunState
-from sealdyn.faces.geometry import FLOW_INNER, FLOW_OUTER
+from sealdyn.faces.geometry import CONTACT_FORCE, CONTACT_TORQUE, FLOW_INNER, FLOW_OUTER, FORCE, TORQUE
 from sealdyn.films.reynolds.film import FILM as REYNOLDS_FILM
 from sealdyn.films.reynolds.mesh import ANGLE_STEP, AREA, SECTORS, table
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import Scenario, read_scenario
+from sealdyn.scene.contact import Contact
+from sealdyn.scene.excitation import Shaft
 from sealdyn.scene.film import Film, Reynolds
 from sealdyn.scene.patterns import Waviness
-from sealdyn.scene.scene import SceneError
+from sealdyn.scene.rings import Stator, Support
+from sealdyn.scene.scene import Scene, SceneError
 from sealdyn.simulation.selection import check_method, choose_method
 from sealdyn.simulation.verification_run import ProgressSink
 from sealdyn.solvers.contract import Counts, SolverFailure, Status
@@ -79,22 +81,26 @@ def test_heights_with_plateaus():
 
 @pytest.mark.parametrize(("clearance", "share", "lowest"), [(5e-7, 0.0, 5e-7), (2e-7, 1.0, 1.5 * 1.66e-7 * 2**0.5)])
 def test_plane_faces_with_plateaus(clearance, share, lowest):
-    """The film of parallel faces in closed form, clear of the plateaus and on them."""
+    """The film of parallel faces in closed form, clear of the plateaus and on them, where it gets no thinner."""
     film = Film(
         inner_radius=0.045, outer_radius=0.05, inner_pressure=0.0, outer_pressure=1e5, viscosity=1e-3,
-        cavitation_pressure=0.0, model="reynolds", reynolds=Reynolds(cells_r=40, cells_theta=8, sectors=8),
+        clearance=clearance, cavitation_pressure=0.0, model="reynolds", reynolds=Reynolds(cells_r=40, cells_theta=8),
     )  # fmt: skip
-    faces = plateaus(1.66e-7, 1.5, 1e8, 1e7)
-    found = load_shares(film, Waviness(order=3, amplitude=1e-15), 100.0, faces, clearance)
+    worn = Contact(1.66e-7, law="plateaus", truncation=1.5, plateau_roughness=5e-9, compressive_strength=1e8,
+                   shear_strength=1e7)  # fmt: skip
+    scene = Scene(shaft=Shaft(speed=100.0), film=film, contact=worn, stator=Stator(support=Support(1e4, radius=0.0475)))
+    interface = Interface(scene, 1e-10)
+    s, _ = rest_state(scene, clearance)
+    flow_at_rest(interface, s)
     log, area = math.log(0.05 / 0.045), math.pi * (0.05**2 - 0.045**2)
     touching = share * (0.5 * math.erfc(1.5 / 2**0.5)) ** 2
     force = 1e5 * math.pi * (0.05**2 - (0.05**2 - 0.045**2) / (2.0 * log))
     shear = 1e-3 * 100.0 * math.pi / 2 * (0.05**4 - 0.045**4) / lowest
-    assert found["leakage"] == pytest.approx(math.pi * lowest**3 * 1e5 / (6e-3 * log), rel=1e-6)
-    assert found["film_force"] == pytest.approx(force, rel=1e-3)
-    assert found["contact_force"] == pytest.approx(touching * 1e8 * area, rel=1e-9)
+    assert -s[FLOW_INNER] == pytest.approx(math.pi * lowest**3 * 1e5 / (6e-3 * log), rel=1e-6)
+    assert s[FORCE] == pytest.approx(force, rel=1e-3)
+    assert s[CONTACT_FORCE] == pytest.approx(touching * 1e8 * area, rel=1e-9)
     rubbed = touching * 1e7 * 2.0 * math.pi / 3.0 * (0.05**3 - 0.045**3)
-    assert found["torque"] == pytest.approx(shear + rubbed, rel=1e-6)
+    assert (s[TORQUE], s[CONTACT_TORQUE]) == pytest.approx((shear, rubbed), rel=1e-6)
 
 
 def settled_run(scenario, tolerance=1e-4, method="trbdf2", duration=None):

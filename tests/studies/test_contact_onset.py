@@ -11,14 +11,18 @@ from sealdyn import closed_form as cf
 from sealdyn.analysis import shooting
 from sealdyn.analysis.shooting import Follower, Shooter, TooMuchWork
 from sealdyn.archive import read_study
+from sealdyn.dynamics.model import Model
 from sealdyn.report.panels import sheet_of
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import parse_scenario, with_values
+from sealdyn.scene import variants
+from sealdyn.simulation.margin import aligned_flow, limit_of_forcing
+from sealdyn.simulation.plausibility import FAST, leakage_numbers
 from sealdyn.solvers.contract import Recorder
 from sealdyn.solvers.integrate import solve
 from sealdyn.studies import contact_onset
 from sealdyn.studies._runner import run_study
-from sealdyn.studies.contact_onset import Settings, onset
+from sealdyn.studies.contact_onset import Settings, linear_onset, onset
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 POINT = {"margin": 1e-3, "tolerance": 1e-5, "most": 1e3, "set": {}, "floor": False}
@@ -146,6 +150,33 @@ def test_an_onset_beyond_any_small_tilt_is_an_answer(tmp_path):
     assert answer["formula"] == pytest.approx(expected, rel=1e-5) and expected > 0.5
     assert answer["status"] == "ok" and answer["nonlinear"] is None and answer["beyond_tilt"] < answer["formula"]
     assert "path" not in answer and answer["times_own"] == pytest.approx(answer["formula"] * 0.060 / 20e-6)
+    # Its own tilt ends it: that of the ring, which is what the film makes of the rotor's less what it does not.
+    w, k, d = numbers["speed"], numbers["film_stiffness"], numbers["film_damping"]
+    film = k + 0.5j * w * d
+    ring = numbers["support_stiffness"] - 5e-5 * w**2 + 1j * w * numbers["support_damping"]
+    assert answer["linear_limit"]["by"] == "small tilts"
+    assert answer["linear_limit"]["value"] == pytest.approx(0.02 / max(1.0, abs(film / (ring + film))), rel=1e-4)
+
+
+@pytest.mark.core
+def test_a_gas_is_slow_no_more_before_its_faces_touch():
+    """Edges open as much as they close; the Mach number of the mean flow grows with the square of the gap, up to where
+    the program takes a gas for slow."""
+    read = sealdyn.read_scenario(SCENARIOS / "gas_reynolds_reference.toml", ["stator.misalignment=0"])
+
+    def scene(value):
+        return variants.with_values(read.scene, {"rotor.runout": value})
+
+    formula, touching = linear_onset(scene, "rotor.runout")
+    model = Model(scene(0.0), 1e-6)
+    (r_i, h_i), (r_o, h_o) = sorted(model.aligned_gaps())
+    per = (h_i if touching == r_i else h_o) / (formula * touching)
+    mach = leakage_numbers(model, aligned_flow(model, model.start)[0])[1]
+    room = (FAST / mach) ** 0.5 - 1.0
+    found = limit_of_forcing(lambda value: Model(scene(value), 1e-6), formula)
+    assert found["by"] == "slow gas" and found["value"] < 0.1 * formula
+    assert found["value"] == pytest.approx(min(h_i * room / (r_i * per), h_o * room / (r_o * per)), rel=1e-6)
+    assert limit_of_forcing(lambda value: Model(scene(value), 1e-6), 0.5 * found["value"]) is None
 
 
 def test_orbits_are_not_followed_beyond_any_small_tilt(tmp_path):

@@ -6,10 +6,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from oracles import christensen
+from scipy.integrate import quad
 from scipy.special import pbdv
 
 from sealdyn.faces import contact, geometry, roughness
-from sealdyn.scene.contact import Contact, contact_errors, contact_thresholds
+from sealdyn.scene.contact import Contact, contact_errors, contact_thresholds, finish
 from sealdyn.scene.film import Film
 
 R_I, R_O, C0, CONING, ROUGHNESS, STRENGTH, SPEED = 0.032, 0.040, 10e-6, 3.125e-3, 0.1e-6, 300e6, 1000.0
@@ -19,7 +20,12 @@ CHRISTENSEN = Contact(
 )
 NUMBER, TIP, MODULUS = 1e11, 5e-6, 30e9
 GAUSSIAN = Contact(ROUGHNESS, law="greenwood-williamson", asperity_density=NUMBER, asperity_radius=TIP, modulus=MODULUS)
-LAWS = pytest.mark.parametrize("law", [CHRISTENSEN, GAUSSIAN], ids=["christensen", "gaussian"])
+WORN, PEAK = 1.5, 2e-8
+PLATEAUS = Contact(
+    ROUGHNESS, law="plateaus", truncation=WORN, plateau_roughness=PEAK, compressive_strength=STRENGTH,
+    stator_wear_coefficient=2e-16, rotor_wear_coefficient=3e-16,
+)  # fmt: skip
+LAWS = pytest.mark.parametrize("law", [CHRISTENSEN, GAUSSIAN, PLATEAUS], ids=["christensen", "gaussian", "plateaus"])
 SLOTS = {
     n: getattr(geometry, f"CONTACT_{n.upper()}") for n in ("force", "x", "y", "torque", "area", "pressure", "energy")
 }
@@ -100,6 +106,45 @@ def test_christensen_is_the_sum_over_the_face(coning):
                 assert abs(found[name] - value) <= allowed * size, (name, state)
 
 
+def worn(h):
+    """Share, pressure and energy of faces worn to plateaus: both Gaussian heights of rms 1/sqrt(2) are beyond the cut
+    at once, and there Christensen's heights of the plateaus meet."""
+    flat = quad(lambda z: np.exp(-z * z / 2) / np.sqrt(2 * np.pi), WORN, 12)[0] ** 2
+    share, energy = christensen(h - 2 * WORN * ROUGHNESS / np.sqrt(2), 3 * PEAK, STRENGTH)
+    return flat * share, flat * STRENGTH * share, flat * energy
+
+
+@pytest.mark.core
+def test_worn_faces_touch_as_their_heights_say():
+    """Share, pressure and energy by quadrature of both distributions, from first touch to far below the plateaus."""
+    flat = quad(lambda z: np.exp(-z * z / 2) / np.sqrt(2 * np.pi), WORN, 12)[0] ** 2
+
+    def share(h):
+        low = (h - 2 * WORN * ROUGHNESS / np.sqrt(2)) / (3 * PEAK)
+        low = min(max(low, -1), 1)
+        return flat * quad(lambda d: 35 / 32 * (1 - d * d) ** 3, low, 1)[0]
+
+    top = contact_thresholds(PLATEAUS)[1]
+    area = np.pi * (R_O**2 - R_I**2)
+    for h in (0.27e-6, 0.24e-6, 0.22e-6, 0.19e-6, 0.16e-6, 0.15e-6, 0.05e-6):
+        found = rub(PLATEAUS, face(0.0), h - C0, 0.0, 0.0)
+        edges = [e for e in (2 * WORN * ROUGHNESS / np.sqrt(2) - 3 * PEAK,) if h < e]
+        energy = STRENGTH * quad(share, h, top, points=edges, epsabs=0)[0]
+        assert found["area"] == pytest.approx(share(h), rel=1e-9, abs=1e-15)
+        assert found["pressure"] == pytest.approx(STRENGTH * share(h), rel=1e-9, abs=1e-6)
+        assert found["force"] == pytest.approx(STRENGTH * share(h) * area, rel=1e-9, abs=1e-9)
+        assert found["energy"] == pytest.approx(energy * area, rel=1e-7, abs=1e-16)
+
+
+@pytest.mark.parametrize("coning", [CONING, -0.5e-3])
+def test_worn_faces_are_the_sum_over_the_face(coning):
+    for state in random_states(7, 6, coning, deepest=0.2):
+        found, exact = rub(PLATEAUS, face(coning), *state), summed(worn, coning, *state, angles=4096, radii=961)
+        for name, value in exact.items():
+            size = R_O * exact["force"] if name in "xy" else value
+            assert abs(found[name] - value) <= 1e-4 * size, (name, state)
+
+
 @pytest.mark.parametrize("coning", [CONING, 0.0, -0.5e-3])
 def test_gaussian_is_the_sum_over_the_face(coning):
     """Within the fit: 1e-3 of Greenwood & Williamson's integrals, as long as h > -3 rms; wear was not asked for."""
@@ -117,7 +162,8 @@ def test_forces_are_minus_the_derivatives_of_the_energy(law):
         f = face(tilt_radius=tilt_radius)
         for state in random_states(9, 15, CONING):
             found = rub(law, f, *state)
-            for n, (name, step) in enumerate((("force", 1e-3 * C), ("x", 1e-3 * C / R_O), ("y", 1e-3 * C / R_O))):
+            length = 3e-3 * finish(law)
+            for n, (name, step) in enumerate((("force", length), ("x", length / R_O), ("y", length / R_O))):
                 at = [rub(law, f, *(np.array(state) + m * step * np.eye(3)[n]))["energy"] for m in (-2, -1, 1, 2)]
                 slope = (at[0] - 8 * at[1] + 8 * at[2] - at[3]) / (12 * step)
                 size = found["force"] * (1 if n == 0 else R_O)
@@ -258,6 +304,11 @@ FAULTS = {
     "friction that drives": (dict(compressive_strength=1e8, friction_coefficient=-0.1), "friction_coefficient"),
     "growing face": (dict(compressive_strength=1e8, rotor_wear_coefficient=-1e-16), "rotor_wear_coefficient"),
     "asperities of the other law": (dict(compressive_strength=1e8, modulus=1e9), "modulus"),
+    "plateaus higher than any height": (
+        dict(law="plateaus", compressive_strength=1e8, truncation=6.0, plateau_roughness=1e-9), "truncation"),
+    "plateaus rougher than high": (
+        dict(law="plateaus", compressive_strength=1e8, truncation=1.0, plateau_roughness=1e-7), "plateau_roughness"),
+    "plateaus of another law": (dict(compressive_strength=1e8, truncation=1.5), "truncation"),
     "gaussian without tips": (
         dict(law="greenwood-williamson", asperity_density=1e11, modulus=1e9),
         "asperity_radius",

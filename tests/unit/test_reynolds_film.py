@@ -310,8 +310,8 @@ def test_a_start_in_motion_satisfies_the_equations():
 
 @pytest.mark.parametrize("x", [-0.7, -0.2, 0.0, 0.3, 0.99, 1.0, 1.7])
 def test_means_over_the_asperities(x):
-    assert means.mean_film(x, 1.0) == pytest.approx(float(roughness.mean_film(x)), rel=1e-12)
-    assert means.mean_cube(x, 1.0) == pytest.approx(float(roughness.mean_film_cubed(x)), rel=1e-11)
+    assert means.mean_film(x, 1.0, 0.0) == pytest.approx(float(roughness.mean_film(x)), rel=1e-12)
+    assert means.mean_cube(x, 1.0, 0.0, False) == pytest.approx(float(roughness.mean_film_cubed(x)), rel=1e-11)
     assert means.contact_share(x, 1.0) == pytest.approx(float(roughness.contact_fraction(x)), abs=1e-14)
 
     def density(d):
@@ -319,7 +319,44 @@ def test_means_over_the_asperities(x):
 
     low = max(-1.0, 0.1 - x)
     reciprocal = quad(lambda d: density(d) / (x + d), low, 1.0, epsrel=1e-12)[0]
-    assert means.mean_reciprocal(x, 1.0) == pytest.approx(reciprocal, rel=1e-9)
+    assert means.mean_reciprocal(x, 1.0, 0.0) == pytest.approx(reciprocal, rel=1e-9)
+    # Over plateaus that are 4 apart: the smooth film that stays between them, and how it moves.
+    smooth = 4.0 + quad(lambda d: density(d) * max(x + d, 0.0), -1.0, 1.0, points=[min(max(-x, -1.0), 1.0)])[0]
+    moved = quad(density, max(-x, -1.0), 1.0)[0] if x > -1.0 else 0.0
+    assert means.mean_film(4.0 + x, 1.0, 4.0) == pytest.approx(smooth, rel=1e-9)
+    assert means.mean_cube(4.0 + x, 1.0, 4.0, False) == pytest.approx(smooth**3, rel=1e-9)
+    assert means.mean_reciprocal(4.0 + x, 1.0, 4.0) == pytest.approx(1.0 / smooth, rel=1e-9)
+    assert 1.0 - means.contact_share(means.open_height(4.0 + x, 1.0, 4.0, 9.0) - 4.0, 1.0) == pytest.approx(
+        moved, abs=1e-9
+    )
+    assert means.open_slope(4.0 + x, 1.0, 4.0, 9.0) == 1.0
+
+
+@pytest.mark.parametrize("x", [3.0, 4.0])
+def test_the_isotropic_factor_is_what_a_flow_around_low_asperities_asks_for(x):
+    """Patir and Cheng's of h = x rms.  Of a plane field of conductances h^3, alike in every direction, second order in
+    their spread: mean less variance over twice the mean, h^3 (1 + 3/x^2) - 9 h^3/(2 x^2) = h^3 (1 - 1.5/x^2)."""
+    assert means.mean_cube(x, 3.0, 0.0, True) / x**3 == pytest.approx(1.0 - 1.5 / x**2, rel=5e-3)
+    # Heights that are long along the flow let more through.
+    assert means.mean_cube(x, 3.0, 0.0, True) < x**3 < means.mean_cube(x, 3.0, 0.0, False)
+
+
+def test_the_isotropic_factor_in_the_leakage_and_beyond_its_range():
+    film = wide(inner_pressure=0.0, cavitation_pressure=0.0, clearance=5e-7)
+    leaks = {}
+    for seen in ("none", "christensen", "patir-cheng"):
+        f = reynolds.parameters(replace(film, reynolds=Reynolds(cells_r=40, cells_theta=8, roughness=seen)), 5e-7)
+        contact.lay_asperities(Contact(roughness=2e-7, compressive_strength=1e8), f)
+        s, x = gap(film), np.empty(2 * 40 * 8)
+        assert reynolds.start(f, s, x) == 0
+        reynolds.flow(f, s, x)
+        leaks[seen] = s[FLOW_INNER]
+    # Of parallel faces; 0.5 um are 2.5 rms.
+    smooth = -math.pi * 5e-7**3 * 3e5 / (6.0 * VISCOUS * math.log(0.05 / 0.045))
+    assert leaks["patir-cheng"] == pytest.approx(smooth * (1.0 - 0.90 * math.exp(-0.56 * 2.5)), rel=1e-6)
+    assert leaks["christensen"] == pytest.approx(smooth * roughness.mean_film_cubed(5 / 6) / (5 / 6) ** 3, rel=1e-6)
+    cubes = [means.mean_cube(x, 3.0, 0.0, True) for x in np.linspace(3.0, -2.0, 60)]
+    assert min(cubes) > 0.0 and np.all(np.diff(cubes) < 0.0)
 
 
 def touching(order=3, amplitude=0.3e-6, dz=0.0, tilt=0.0):

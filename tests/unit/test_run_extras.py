@@ -40,8 +40,8 @@ def test_a_speed_without_a_film_ends_no_run(changes):
 @pytest.mark.parametrize("error", [SceneError("shaft.speed", "1 rad/s", "2"), ZeroDivisionError("division by zero"),
                                    np.linalg.LinAlgError("singular")], ids=lambda e: type(e).__name__)  # fmt: skip
 @pytest.mark.parametrize("where, what", [
-    (stability, "thresholds"), (stability, "resonance_speeds"), (summary, "_contact_margin"), (summary, "_closed_form"),
-    (summary, "_aligned"), (summary, "stability"),
+    (stability, "thresholds"), (stability, "resonance_speeds"), (summary, "contact_margin"), (summary, "_closed_form"),
+    (summary, "aligned_flow"), (summary, "stability"),
 ])  # fmt: skip
 def test_an_extra_that_fails_is_null_with_a_sentence(monkeypatch, where, what, error):
     def fails(*given):
@@ -54,8 +54,8 @@ def test_an_extra_that_fails_is_null_with_a_sentence(monkeypatch, where, what, e
     (said,) = set(found["warnings"]) - set(whole["warnings"])
     assert str(error) in said
     gone = {"thresholds": found["stability"]["thresholds"], "resonance_speeds": found["stability"]["resonance_speeds"],
-            "_contact_margin": found["contact_margin"], "_closed_form": found["closed_form"].get("relative_max"),
-            "_aligned": found["film"]["leakage"], "stability": found["stability"]["verdict"]}  # fmt: skip
+            "contact_margin": found["contact_margin"], "_closed_form": found["closed_form"].get("relative_max"),
+            "aligned_flow": found["film"]["leakage"], "stability": found["stability"]["verdict"]}  # fmt: skip
     both = ["thresholds", "resonance_speeds", "stability"] if what == "stability" else [what]
     assert [name for name, value in gone.items() if value is None] == both
     assert found["film"].keys() == whole["film"].keys() and found["h_min"] == whole["h_min"]

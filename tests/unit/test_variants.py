@@ -11,6 +11,7 @@ from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scenario import reader
 from sealdyn.scenario.overrides import override_of
 from sealdyn.scenario.reader import ScenarioError, parse_scenario
+from sealdyn.scene.checks import scene_errors
 from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import AxialVibration, Housing
 from sealdyn.scene.patterns import Waviness
@@ -158,3 +159,13 @@ def test_a_ring_keeps_the_waves_of_its_face_on_the_other_side(made):
     scene = replace(scene, stator=replace(scene.stator, waviness=own), rotor=replace(scene.rotor, waviness=other))
     turned = counterpart(scene)
     assert turned.rotor.waviness == own and turned.stator.waviness == other
+
+
+def test_heated_rings_change_places_whole():
+    """What heats and cools a ring goes with it, and the partner keeps its body: another arrangement was refused."""
+    read = reader.read_scenario(Path(__file__).parents[2] / "scenarios" / "pump_seal.toml")
+    turned, scene = counterpart(read.scene), read.scene
+    assert (turned.film.heat.stator, turned.film.heat.rotor) == (scene.film.heat.rotor, scene.film.heat.stator)
+    assert (turned.stator.body, turned.rotor.body) == (scene.rotor.body, scene.stator.body)
+    assert not scene_errors(turned, read.run)
+    assert counterpart(turned).film == scene.film

@@ -2,14 +2,15 @@
 
 import math
 
-from scipy.optimize import brentq
-
+from ...scene.contact import Contact
+from ...scene.excitation import Shaft
 from ...scene.film import Film, Reynolds
 from ...scene.patterns import Waviness
-from ..truncated_heights import load_shares, plateaus
-from .lebeck_1979 import BALANCE, INNER, OUTER, SPEED, TOLERANCE, UNEXPLAINED, VISCOSITY
+from ...scene.rings import Stator, Support
+from ...scene.scene import Closing, Scene, SceneError
+from .lebeck_1979 import BALANCE, HALF, INNER, OUTER, SPEED, TOLERANCE, UNEXPLAINED, VISCOSITY, balance
 
-TITLE = "Lebeck, Teale & Pierce (1979), Table 2-7, wavy seal, Gaussian heights with plateaus; film of 24 x 180 a wave"
+TITLE = "Lebeck, Teale & Pierce (1979), Table 2-7, wavy seal, Gaussian heights with plateaus; reynolds, 24 x 180 a wave"
 FILM = "reynolds"
 COVERS = "the same with faces worn to plateaus"
 COLUMNS = {"plateau/sigma_1": "truncation", "quantity": "quantity", "published": "published", "computed": "computed",
@@ -20,8 +21,8 @@ SOURCE = "Lebeck, Teale & Pierce (1979), Table 2-7"
 ROUGHNESS = OUTER / 3e5
 ORDER, AMPLITUDE, SEALED, STRENGTH, SHEAR = 3, 1.2, 5.55e-4, 5.55e-2, 5.55e-3
 CELLS = 24, 180
-# Clearances (over the roughness) between which a balance is looked for.
-NEAREST, FARTHEST, STEPS = 1.3, 4.5, 33
+# Of the plateaus, of the roughness: the report's are smooth, and their load jumps.
+FINISH = 0.02
 TOLERANCES = TOLERANCE | {"load_support": 1e-2, "leakage": 1e-2, "clearance": 1e-2}
 # Truncation over one face's rms heights: printed number, and that of an independent computation, in its digits; None
 # where there is no balance.
@@ -35,50 +36,38 @@ ROWS = {
 FRICTION = "viscous shear over all of the film is 0.0027 by itself, more than the print has with contact"
 
 
-def balances(truncation: float, cells=CELLS) -> list[dict[str, float]]:
-    """Every balance of a seal with this truncation: load support, clearance (over the roughness), leakage (over speed,
-    outer radius squared and roughness) and friction coefficient."""
+def scene_of(truncation: float, cells=CELLS) -> Scene:
+    """The seal of a row, SI, with `cells` over the radius and around a wave."""
     unit = VISCOSITY * SPEED * (OUTER / ROUGHNESS) ** 2
     film = Film(
         inner_radius=INNER, outer_radius=OUTER, outer_pressure=SEALED * unit, inner_pressure=0.0, viscosity=VISCOSITY,
         cavitation_pressure=0.0, model="reynolds",
-        reynolds=Reynolds(cells_r=cells[0], cells_theta=cells[1] * ORDER, sectors=ORDER),
+        reynolds=Reynolds(cells_r=cells[0], cells_theta=cells[1] * ORDER),
     )  # fmt: skip
-    faces = plateaus(ROUGHNESS, truncation, STRENGTH * unit, SHEAR * unit)
-    waves = Waviness(order=ORDER, amplitude=AMPLITUDE * ROUGHNESS)
-    closing = BALANCE * film.outer_pressure * math.pi * (OUTER**2 - INNER**2)
-
-    def at(clearance):
-        return load_shares(film, waves, SPEED, faces, clearance * ROUGHNESS)
-
-    def excess(clearance):
-        found = at(clearance)
-        return (found["film_force"] + found["contact_force"]) / closing - 1.0
-
-    steps = [NEAREST + (FARTHEST - NEAREST) * n / (STEPS - 1) for n in range(STEPS)]
-    over, found = [excess(clearance) for clearance in steps], []
-    for n in range(STEPS - 1):
-        if over[n] * over[n + 1] <= 0.0:
-            clearance = brentq(excess, steps[n], steps[n + 1], rtol=1e-10)
-            here = at(clearance)
-            found.append({
-                "load_support": here["film_force"] / closing, "clearance": clearance,
-                "leakage": here["leakage"] / (SPEED * OUTER**2 * ROUGHNESS),
-                "friction_coefficient": here["torque"] / (0.5 * closing * (INNER + OUTER)),
-            })  # fmt: skip
-    return found
+    worn = Contact(roughness=ROUGHNESS, law="plateaus", truncation=truncation, plateau_roughness=FINISH * ROUGHNESS,
+                   compressive_strength=STRENGTH * unit, shear_strength=SHEAR * unit)  # fmt: skip
+    support = Support(axial_stiffness=0.0, radius=0.5 * (INNER + OUTER))
+    waves = [Waviness(order=ORDER, amplitude=AMPLITUDE * ROUGHNESS)]
+    return Scene(shaft=Shaft(speed=SPEED), film=film, contact=worn, stator=Stator(support=support, waviness=waves),
+                 closing=Closing(balance_ratio=BALANCE, spring_force=0.0))  # fmt: skip
 
 
 def checks() -> list[dict]:
     """Each number of the table; besides what every source has truncation, computed and independent."""
     rows = []
     for truncation, numbers in ROWS.items():
-        found = balances(truncation)
+        try:
+            found = balance(scene_of(truncation))
+        except SceneError:
+            # No clearance holds the closing force.
+            found = None
         if numbers is None:
-            rows.append(_row(truncation, "balances", 0.0, (None, 0.0), float(len(found))))
-        else:
-            alone = found[0] if len(found) == 1 else dict.fromkeys(numbers, math.nan)
-            rows += [_row(truncation, name, TOLERANCES[name], print_, alone[name]) for name, print_ in numbers.items()]
+            rows.append(_row(truncation, "balances", 0.0, (None, 0.0), float(found is not None)))
+            continue
+        # In units of the roughness, of which the other table's is a multiple.
+        found = dict.fromkeys(numbers, math.nan) if found is None else found
+        found |= {name: found[name] * HALF / ROUGHNESS for name in ("clearance", "leakage")}
+        rows += [_row(truncation, name, TOLERANCES[name], print_, found[name]) for name, print_ in numbers.items()]
     return rows
 
 

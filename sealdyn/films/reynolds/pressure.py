@@ -45,6 +45,7 @@ from .mesh import (
     half_height,
     heights,
     mean_reciprocal,
+    plateau,
     table,
 )
 
@@ -217,7 +218,7 @@ def flow(f, s, x):
     angles, cells = u.shape
     _, _, ways, _ = films(f, s)
     p_i, p_o = s[INNER_PRESSURE] - f[CAVITATION], s[OUTER_PRESSURE] - f[CAVITATION]
-    drag, c, area = table(f, DRAG), half_height(f), table(f, AREA)
+    drag, c, b, area = table(f, DRAG), half_height(f), plateau(f), table(f, AREA)
     p, fill, nodes, between = np.empty_like(u), np.empty_like(u), np.empty_like(u), np.empty_like(u)
     split(f, u, p, fill)
     heights(f, s, nodes, between, np.empty((angles, cells + 1)))
@@ -226,7 +227,7 @@ def flow(f, s, x):
         inner += ways[k, 0] * (p_i - p[k, 0])
         outer += ways[k, cells] * (p[k, cells - 1] - p_o)
         for j in range(cells):
-            sheared += drag[j] * mean_reciprocal(nodes[k, j], c)
+            sheared += drag[j] * mean_reciprocal(nodes[k, j], c, b)
             lifted -= 0.5 * p[k, j] * area[j] * (between[k, j] - between[k - 1, j])
     s[FLOW_INNER], s[FLOW_OUTER] = f[SECTORS] * inner, f[SECTORS] * outer
     s[TORQUE] = f[SECTORS] * (f[ANGLE_STEP] * s[VISCOSITY] * s[SPIN_DIFFERENCE] * sheared + lifted)

@@ -212,7 +212,9 @@ def _open(given, clearance):
         slope = slope + given("film.coning_per_pressure") * (sealed - given("film.coning_reference_pressure"))
     outer = gap + slope * np.subtract(r_o, r_i)
     # Rough faces are closed where all their asperities are flat.
-    lowest = np.multiply(-HALF_HEIGHT, given("contact.roughness")) if given.scene.contact else np.multiply(floor, gap)
+    rough = given.scene.contact
+    flat = 0.0 if rough and rough.law == "plateaus" else -HALF_HEIGHT
+    lowest = np.multiply(flat, given("contact.roughness")) if rough else np.multiply(floor, gap)
     return np.asarray((r_i > 0) & (r_i < r_o) & (gap > 0) & (outer > lowest))
 
 

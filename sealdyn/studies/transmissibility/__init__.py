@@ -6,6 +6,7 @@ support under both).
 Phase (deg): how far the tilt of the ring that carries the forcing, relative to its partner, stands behind that
 forcing in the forcing's own frame, against the sense of the shaft's rotation; 0 where it follows at once.
 Three independent methods: formula, harmonic balance, and the equations of motion in time.
+At the scenario's speed also Green's groups, the coning of the stiffest film, and the inertia ratio of a floating rotor.
 **Source** Green (1989), Fig. 8 and Table 1; the phases are the arguments of the same quotients; FMSR, of which he only
 expects that it is better than both, closed_form/response.py.
 """
@@ -35,11 +36,11 @@ from .arrangements import (
     SEALS,
     Arrangement,
     curves,
-    groups,
     phases_apart,
     points_in_time,
     seals_of,
 )
+from .choices import UNITS, choice_tables, choices
 
 INFO = Info(
     timed=("fmr_reference", 3),
@@ -47,14 +48,15 @@ INFO = Info(
     grooved=True,
     refuses=("secondary-seal",),
     units={
-        "speed": "rad/s", "turns": "1", "groups/seal_parameter": "Pa", "from": "rad/s", "to": "rad/s", "pairs": "1",
+        "speed": "rad/s", "turns": "1", "from": "rad/s", "to": "rad/s", "pairs": "1", **UNITS,
         **dict.fromkeys(PHASES, "deg"), **dict.fromkeys((*QUANTITIES, "absolute"), "1"),
         **{f"stability_ends/{seal}": "rad/s" for seal in SEALS},
         **{f"table{road}/{seal}": "the row's unit"
            for seal in SEALS for road in ("", "/formula", "/linear_algebra", "/time_domain")},
     },
     along={seal + road: ("speed",) for seal in SEALS for road in ("", "/linear_algebra")}
-    | {"time_domain": ("speed",), "crossings": ("speed",)},
+    | {"time_domain": ("speed",), "crossings": ("speed",)}
+    | {f"over_inertia_ratio{part}": ("ratio",) for part in ("", "/fmr", "/fmsr")},
 )  # fmt: skip
 # Relative difference below which two arrangements transmit the same; how well the end of stability is located.
 SAME, LOCATED = 1e-9, 1e-9
@@ -145,7 +147,7 @@ def run(scenario, settings, tools) -> Answer:
     ]  # fmt: skip
     # A turn over grooves takes its time, and Green's groups are of faces without.
     numbers["time_domain"] = [] if grooved else points_in_time(scenario, settings, speeds, own_speed, tools)
-    numbers["groups"] = {} if grooved else groups(seals, own_speed)
+    numbers |= choices(seals, 0.0 if grooved else own_speed)
     numbers["table"] = table(seals, own_speed, by_formula, numbers["time_domain"]) if own_speed else []
     with reading_in({"rad/s": "rpm"} if settings.unit == "rpm" else {}):
         tables, far = _tables(seals, numbers)
@@ -335,6 +337,8 @@ def _notes(seals, numbers) -> list[str]:
     for name in SEALS:
         if not numbers["stability_ends"][name] and not all(numbers[name]["stable"]):
             said.append(f"{name.upper()} is not damped over the whole range: no steady state.")
+    if numbers["over_inertia_ratio"].get("stable_to"):
+        said.append(f"FMR never whirls up to I/J = {numbers['over_inertia_ratio']['stable_to']:.4g}.")
     if not numbers["formula_holds"]:
         said.append("No closed form for this film or a turning stator: lines are linear algebra.")
     film = seals["fmr"].scene.film
@@ -386,7 +390,7 @@ def _tables(seals, numbers) -> tuple[list[Table], list[str]]:
     done = sum("failed" not in row for row in numbers["time_domain"])
     apart = (numbers["roads_apart"], numbers["phases_apart"]) if numbers["formula_holds"] else (None, None)
     found.append(Table("film", columns, [[seals["fmr"].model.interface.name, stiffness, damping, *apart, done]]))
-    return found, far
+    return found + choice_tables(numbers), far
 
 
 def _panels(numbers) -> list[Panel]:

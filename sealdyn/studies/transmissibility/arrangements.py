@@ -55,10 +55,10 @@ class Arrangement:
         model = self.model.at_speed(float(speed))
         return model.clearance + axial_shift(model, model.start, float(speed))[0]
 
-    def relative_tilts(self, speed: float) -> tuple[complex, complex]:
+    def relative_tilts(self, speed: float, linear: modes.LinearScene | None = None) -> tuple[complex, complex]:
         """Static and dynamic relative tilt (stator minus rotor) per unit forcing (rad/rad), each in its frame, by
-        harmonic balance."""
-        linear, found = self.linear(speed), []
+        harmonic balance; `linear` in place of that of the speed (rad/s)."""
+        linear, found = linear or self.linear(speed), []
         for ring, frequency in ((STATOR, self.stator_speed), (ROTOR, speed)):
             none, circle = np.zeros(3, dtype=complex), np.array([0, 1, -1j])
             own = linear.rings[ring].floats
@@ -166,7 +166,8 @@ def quiet(scene: Scene) -> Scene:
 
 def groups(seals: dict[str, Arrangement], speed: float) -> dict:
     """Green's dimensionless groups at a speed (rad/s), {} at rest: those of faces and film, and of the rings on their
-    supports, `rotor` and `stator`, as they float in the FMSR seal; what each is: closed_form/green_1989.py."""
+    supports, `rotor` and `stator`, as they float in the FMSR seal, those of axial motion under `axial`; what each is:
+    closed_form/green_1989.py."""
     if speed == 0.0:
         return {}
     seal = seals["fmsr"]
@@ -182,7 +183,11 @@ def groups(seals: dict[str, Arrangement], speed: float) -> dict:
     drop = film.outer_pressure - film.inner_pressure
     coefficients = {"film_stiffness": stiffness, "film_damping": damping}
     found = cf.film_groups(**face, coning=film.coning, pressure_drop=drop, **coefficients)
+    linear = seal.linear(speed)
+    found["axial"] = {"film": cf.axial_groups(**face, stiffness=linear.film_k[0, 0], damping=linear.film_d[0, 0])}
     for name, ring in (("rotor", seal.scene.rotor), ("stator", seal.scene.stator)):
+        axial = dict(mass=ring.mass, stiffness=ring.support.axial_stiffness, damping=ring.support.axial_damping)
+        found["axial"][name] = cf.axial_groups(**face, **axial)
         found[name] = cf.ring_groups(**face, **tilting(ring)._asdict())
         if not np.isfinite(found[name]["inertia_ratio"]):
             found[name]["inertia_ratio"] = None
