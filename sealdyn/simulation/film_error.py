@@ -41,7 +41,7 @@ from .verification_run import ErrorScales
 # Steps along which the defect is followed: per fastest period, at once, and in all; points of a steady period.
 FOLLOWED, AT_ONCE, MOST, STEADY = 16, 125, 250, 32
 # What divides a change that is none; what halving the cells says of their error in a run, times this, counts as it.
-TINY, CELLS = 1e-300, 1.5
+TINY, MARGIN = 1e-300, 1.5
 # Least eigenvalue of a scene whose rings are all held, as a share of the largest.
 HELD = 1e-12
 
@@ -291,7 +291,7 @@ def cell_error(run: RunState, halving: float | None = None) -> float | None:
     scales, half = ErrorScales(run), _block(model, model.interface.halved())
     at_rest = _apart_at_rest(run, scales, f, half)
     changes = [] if at_rest is None else [float(at_rest.max())]
-    changes += [] if halving is None else [CELLS * halving]
+    changes += [] if halving is None else [MARGIN * halving]
     if not changes:
         return None
     share = 1.0 / (2.0**model.interface.cell_order - 1.0)
