@@ -5,7 +5,6 @@ import dataclasses
 import os
 import stat
 import tomllib
-import zlib
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -83,15 +82,13 @@ class Scenario:
     application: Application | RadialApplication | None = field(default=None, compare=False)
     gauge: frozenset[str] = field(default=frozenset(), compare=False)
     foreign_start: str = field(default="", compare=False)
-    # Of scene and run as they were read from the text.
-    read: int | None = field(default=None, compare=False, repr=False)
+    # Scene and run that the text and the overrides say.
+    read: tuple | None = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         """An archive holds the text: another scene or run beside it is refused, but of what sets `read` to None."""
-        if not self.text:
-            return
-        now = zlib.crc32(repr((self.scene, self.run)).encode())
-        if self.read not in (None, now):
+        now = self.scene, self.run
+        if self.text and self.read not in (None, now):
             found = "a scene or run other than its text says"
             raise ScenarioError(self.name, "scene", found, 'with_({"film.clearance": "8 um"}), which changes both')
         object.__setattr__(self, "read", now)

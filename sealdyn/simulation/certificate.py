@@ -21,7 +21,7 @@ from ..solvers.global_error import GlobalErrorEstimate
 from ..solvers.integrate import COMPILED, Advance, Outcome
 from ..solvers.matrix_exponential import BETWEEN
 from ..solvers.methods import METHODS
-from .film_error import cell_error, model_error, share_of_halving
+from .film_error import cell_error, model_error
 from .selection import Plan, choose_method
 from .verification_run import EXPLICIT, LEAST_SHARPER, OTHER, UNBOUNDED, Comparison, ErrorScales, budget
 
@@ -41,8 +41,6 @@ LEFT_OUT = 0.05
 LOOSER, SHARE, ENERGY = 30.0, 0.5, 2.5
 # The share of the accuracy beyond which a run goes on with a sharper tolerance.
 ERROR_SHARE = 0.6
-# What halving the cells says of their error, times this, counts as it.
-CELLS = 1.5
 # Motion so many times faster than all that turns or shakes, and damped by less than this share of its frequency, rings
 # after every error of a step that passes over it, which the steps do not show: a gas dam's, which damps nothing.
 RINGS, DEAD = 10.0, 0.05
@@ -239,10 +237,7 @@ def _by_film(run: RunState, by_model: float | None, cells) -> tuple[float | None
     interface = run.model.interface
     if by_model is None and interface.film.constant:
         by_model = model_error(run)
-    known = [cell_error(run)]
-    if cells is not None:
-        known.append(CELLS * share_of_halving(run) * float(np.nanmax(cells, initial=0.0)))
-    by_cells = max((error for error in known if error is not None), default=None)
+    by_cells = cell_error(run, None if cells is None else float(np.nanmax(cells, initial=0.0)))
     if by_cells is None and run.model.observed[0].halved is not None:
         by_cells = math.inf
     if interface.grid_accuracy is not None:

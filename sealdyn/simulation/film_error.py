@@ -34,13 +34,14 @@ from ..films import film_named, limits
 from ..numerics.piecewise_linear import initially
 from ..scene.film import Reynolds
 from ..scene.patterns import waves_of
+from ..scene.scene import SceneError
 from ..scene.variants import seals_that_stick
 from .verification_run import ErrorScales
 
 # Steps along which the defect is followed: per fastest period, at once, and in all; points of a steady period.
 FOLLOWED, AT_ONCE, MOST, STEADY = 16, 125, 250, 32
-# What divides a change that is none.
-TINY = 1e-300
+# What divides a change that is none; what halving the cells says of their error in a run, times this, counts as it.
+TINY, MARGIN = 1e-300, 1.5
 # Least eigenvalue of a scene whose rings are all held, as a share of the largest.
 HELD = 1e-12
 
@@ -275,34 +276,35 @@ def _turning_state(run) -> np.ndarray:
     return s
 
 
-def cell_error(run: RunState) -> float | None:
+def cell_error(run: RunState, halving: float | None = None) -> float | None:
     """Relative error of the film's cells, the largest of force, moment and leakage on the scales of the certificate, of
-    the film at rest at the gap where the run began and where it ended; None of a film that has none to halve, or no
-    steady pressures there.
+    the film at rest at the gap where the run began and where it ended, and, where `halving` is what half the cells
+    change in the run, of the run; None of a film that has none to halve, or where nothing is known.
 
     **Source** Richardson (1911), *Phil. Trans. R. Soc. A* 210, 307: what halving changes, over 2^p - 1, is the error of
-    a method of order p.
+    a method of order p; of cells too wide for that order what four times as many say of the aligned film, as if of
+    order one, where that is more.
     """
-    film, f = run.model.observed
+    model, (film, f) = run.model, run.model.observed
     if film.halved is None:
         return None
-    found = _apart_at_rest(run, f, _block(run.model, run.model.interface.halved()))
-    return None if found is None else float(found.max()) * share_of_halving(run)
-
-
-def share_of_halving(run: RunState) -> float:
-    """Error of the film's cells over what halving them changes: 1 / (2^p - 1) of their order p; of cells too wide for
-    that order what four times as many say of the aligned film, as if of order one, where that is more.
-    **Source** as `cell_error`."""
-    model, (film, f) = run.model, run.model.observed
-    asymptotic = 1.0 / (2.0**model.interface.cell_order - 1.0)
-    if film.finer is None:
-        return asymptotic
-    others = [_block(model, table) for table in (model.interface.halved(), model.interface.finer())]
-    halved, finer = (_apart_at_rest(run, f, other, aligned=True) for other in others)
-    if halved is None or finer is None:
-        return asymptotic
-    return max(asymptotic, 4.0 / 3.0 * float((finer / np.maximum(halved, TINY)).max()))
+    scales, half = ErrorScales(run), _block(model, model.interface.halved())
+    at_rest = _apart_at_rest(run, scales, f, half)
+    changes = [] if at_rest is None else [float(at_rest.max())]
+    changes += [] if halving is None else [MARGIN * halving]
+    if not changes:
+        return None
+    share = 1.0 / (2.0**model.interface.cell_order - 1.0)
+    if film.finer is not None:
+        try:
+            others = half, _block(model, model.interface.finer())
+        except SceneError:
+            # So many cells there are not: what half of them say is not known to be all.
+            return None
+        halved, finer = (_apart_at_rest(run, scales, f, other, aligned=True) for other in others)
+        if halved is not None and finer is not None:
+            share = max(share, 4.0 / 3.0 * float((finer / np.maximum(halved, TINY)).max()))
+    return max(changes) * share
 
 
 def _block(model: Model, table) -> np.ndarray:
@@ -312,10 +314,11 @@ def _block(model: Model, table) -> np.ndarray:
     return block
 
 
-def _apart_at_rest(run: RunState, f, other, aligned: bool = False) -> np.ndarray | None:
-    """Largest error (2,) of the film's loads at rest in block `f` beside those in block `other`, at the gap where the
-    run began and where it ended, with its tilts or `aligned`; None where there are no steady pressures."""
-    film, scales, found = run.model.observed[0], ErrorScales(run), []
+def _apart_at_rest(run: RunState, scales, f, other, aligned: bool = False) -> np.ndarray | None:
+    """Largest error (2,), on ErrorScales, of the film's loads at rest in block `f` beside those in block `other`, at
+    the gap where the run began and where it ended, with its tilts or `aligned`; None where there are no steady
+    pressures."""
+    film, found = run.model.observed[0], []
     for index, tau, y in ((0, 0.0, run.y0), run.last or (0, 0.0, run.y0)):
         loads = []
         for block in (f, other):

@@ -2,7 +2,7 @@
 
     python tests/benchmark/all_scenarios.py [page.png] [--fresh]
 
-Runs `sealdyn study work-precision` on every scenario, some shortened so that the slowest method ends, six tolerances
+Runs `sealdyn study work-precision` on every scenario, some shortened so that the slowest method ends, five tolerances
 each; archives in outputs/work_precision/ are used again unless --fresh.  Who won goes into a JSON file beside the page,
 from which gallery.py makes the table of the gallery's page.
 """

@@ -209,7 +209,7 @@ def test_a_sweep_of_one_key_has_its_values_as_index():
 
 
 def test_another_scene_beside_the_text_is_refused():
-    """Its archive would hold the text's seal, and a study would read that."""
+    """Its archive would hold the text's seal, not the one that ran."""
     scenario = sealdyn.read_scenario(TILTED)
     scene = replace(scenario.scene, film=replace(scenario.scene.film, clearance=8e-6))
     with pytest.raises(sealdyn.ScenarioError) as refused:

@@ -354,11 +354,11 @@ def mark_slow_runs(methods: dict, where: str, slowest: float):
                 row["reason"][k] = f"{row['processor'][k] / least:.0f} times the fastest of this error"
 
 
-def curve(row: dict, where: str, cost: str = "processor") -> list[tuple[float, float]]:
-    """(error, cost) of the runs that ended, errors above zero."""
+def curve(row: dict, where: str) -> list[tuple[float, float]]:
+    """(error, processor time) of the runs that ended, errors above zero."""
     return [
         (max(error, 1e-16), spent)
-        for error, spent, status in zip(row["error"][where], row[cost], row["status"], strict=True)
+        for error, spent, status in zip(row["error"][where], row["processor"], row["status"], strict=True)
         if status == Status.OK and error is not None
     ]
 

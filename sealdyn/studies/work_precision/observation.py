@@ -22,8 +22,8 @@ NOTHING = 1e-12
 class Observed:
     """One run as it is looked at: status and reason, `processor` time (s) of the integration alone, own counts, sample
     times (m,) with `series` (m,) by name, located `steady` extremes over the last forcing period or None, `impulse`
-    (N s) or None, and the scales that errors are relative to; whether its loads `jump`, as those of cells
-    that tear do."""
+    (N s) or None, and the scales that errors are relative to; whether its loads `jump`, as those of cells that tear
+    do."""
 
     status: str
     reason: str
