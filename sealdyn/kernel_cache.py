@@ -106,8 +106,15 @@ def kept_kernels() -> list[Path]:
     return [*kernel_folder().glob("*.nb[ic]")]
 
 
+@cache
+def _names_package(path: Path) -> bool:
+    """Whether a file that is no part of this package imports from it."""
+    return path.is_file() and not path.is_relative_to(PACKAGE) and PACKAGE.name.encode() in path.read_bytes()
+
+
 class KernelLocator:
-    """Where numba keeps a kernel of `SOURCES`, or of a file from outside; other functions are left to numba."""
+    """Where numba keeps a kernel of `SOURCES`, or of another file whose constants may be this package's; functions of
+    others are left to numba."""
 
     def __init__(self, function, file: str):
         self._py_file, path = file, Path(file)
@@ -118,10 +125,10 @@ class KernelLocator:
 
     @classmethod
     def from_function(cls, py_func, py_file: str):
-        """A locator of a function of this package's kernels, or None."""
+        """A locator of a function of this package's kernels or of a file that may use its constants, or None."""
         path = Path(py_file)
         ours = any(path.is_relative_to(PACKAGE / source) for source in SOURCES)
-        return cls(py_func, py_file) if ours or is_outside(path) else None
+        return cls(py_func, py_file) if ours or is_outside(path) or _names_package(path) else None
 
     def ensure_cache_path(self):
         """The folder stands."""
