@@ -235,5 +235,12 @@ def test_a_motion_of_too_many_cycles_is_left_to_shooting():
 
 
 def test_an_orbit_that_closes_the_film_is_none():
-    with pytest.raises(NoOrbit):
-        HarmonicBalance(fms("radial", runout=6e-3)).find()
+    scene = fms("radial", runout=4.5e-3, own=4.5e-4)
+    low = HarmonicBalance(scene).find().extremes["h_min"]["of_clearance"]
+    for floor, wanted in ((0.9 * low, True), (1.1 * low, False)):
+        balance = HarmonicBalance(replace(scene, film=replace(scene.film, floor=floor)))
+        if wanted:
+            assert balance.find().extremes["h_min"]["of_clearance"] == pytest.approx(low, rel=1e-6)
+        else:
+            with pytest.raises(NoOrbit):
+                balance.find()
