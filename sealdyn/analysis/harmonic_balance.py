@@ -12,6 +12,7 @@ is damped.
 """
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from scipy.linalg import lu_factor, lu_solve
@@ -52,8 +53,11 @@ class HarmonicBalance:
     `defects` Newton's steps, in units of the scales.  Other members as of `shooting.Shooter`; its orbits
     have multipliers only `with_multipliers`.  Raises NoOrbit as that, NotSmooth for too many cycles in a period."""
 
+    # Whether the film may store; points of a period and steps of Newton's method at most.
+    stores, most, most_steps = False, MOST, MOST_STEPS
+
     def __init__(self, scene, accuracy: float = 1e-8, turns: int = 1):
-        self.model, self.period = periodic(scene, accuracy, turns)
+        self.model, self.period = periodic(scene, accuracy, turns, self.stores)
         unknowns = self.model.unknowns
         self.segment, self.n = RunState(self.model, self.period).segment(0), unknowns.n
         # Rows of the equations of motion: accelerations, and forces on what has no mass.
@@ -68,7 +72,7 @@ class HarmonicBalance:
         frequencies = [abs(h.frequency) for h in self.segment.harmonics()]
         cycles = max(1, round(max(frequencies, default=0.0) * self.period / (2 * np.pi)))
         self.first = 2 * HARMONICS * cycles + 1
-        if self.first > MOST:
+        if self.first > self.most:
             raise NotSmooth("its fastest forcing has too many cycles in a period")
 
     def times(self, count: int) -> np.ndarray:
@@ -77,8 +81,14 @@ class HarmonicBalance:
 
     def guess(self) -> np.ndarray:
         """The linear steady state at the first points (N, n)."""
+        return self._linear()[0]
+
+    def _linear(self) -> tuple[np.ndarray, np.ndarray]:
+        """Displacements and rates (N, n) of the linear steady state at the first points, opened where they would close
+        the film."""
         at, places = self.segment.periodic_motion[0], self.model.unknowns.among_three()
-        return np.array([at(tau)[0][places] for tau in self.times(self.first)])
+        q, rates = (np.array([at(tau)[k][places] for tau in self.times(self.first)]) for k in (0, 1))
+        return q + max(OPEN * self.model.clearance - self._film(q), 0.0) * self.opening, rates
 
     def find(self, guess=None) -> Orbit:
         """The orbit near `guess` (N, n), by default the linear steady state.  Raises NoOrbit; NotSmooth where its
@@ -87,7 +97,7 @@ class HarmonicBalance:
         while True:
             points, left = self._solved(points)
             tail = self._last_harmonics(points)
-            ends = 2 * len(points) > MOST or tail > FALLS * before
+            ends = 2 * len(points) > self.most or tail > FALLS * before
             if tail <= (self.settled if ends else self.sharp):
                 return must_be_open(self._orbit(points, left))
             if ends:
@@ -95,37 +105,40 @@ class HarmonicBalance:
             points, before = self.at(points, self.times(2 * len(points) - 1)), tail
 
     def _solved(self, points) -> tuple[np.ndarray, float]:
-        """Points (N, n) at which forces and accelerations agree, from some nearby, and the last step of Newton's method
-        (units of the scales)."""
-        matrix, before = None, np.inf
-        if (short := OPEN * self.model.clearance - self._film(points)) > 0.0:
-            points = points + short * self.opening
-        for _ in range(MOST_STEPS):
-            left = self._left(points, *self.derivatives(points))
-            if matrix is None:
-                matrix = lu_factor(self._matrix(points))
-            step = lu_solve(matrix, left.ravel()).reshape(points.shape) if np.all(np.isfinite(left)) else np.inf
-            size = float(np.max(np.abs(step)))
+        """Points (N, n) at which nothing is left over, from some nearby, and the last step of Newton's method (units of
+        the scales)."""
+        kept, before = None, np.inf
+        for _ in range(self.most_steps):
+            step, kept = self._step(points, kept)
+            size = float(np.max(np.abs(step[:, : self.n]) / self.scales))
             self.defects.append(size)
             if not size < DIVERGED:
                 break
             share, film = 1.0, max(self._film(points), 0.0)
-            while share > SHORTEST and self._film(points - share * step * self.scales) < KEPT * film:
+            while share > SHORTEST and self._film(points - share * step) < KEPT * film:
                 share *= 0.5
-            points = points - share * step * self.scales
+            points = points - share * step
             if size < 0.1 * self.sharp or (size < self.settled and size > 0.3 * before):
                 return points, size
-            matrix, before = matrix if size < CONTRACTS * before and share == 1.0 else None, size
+            kept, before = kept if size < CONTRACTS * before and share == 1.0 else None, size
         film = self._film(points) / self.model.clearance
         said = "the forcing is at contact or beyond" if film < CLOSED else "none is near the linear steady state"
         raise NoOrbit(
             f"no periodic orbit is found, the thinnest film of the last trial {film:.1g} of the clearance: {said}"
         )
 
+    def _step(self, points, kept) -> tuple[np.ndarray, Any]:
+        """Newton's step (N, n), and its matrix, made ready: `kept` if there is one."""
+        left = self._left(points, *self.derivatives(points))
+        kept = lu_factor(self._matrix(points)) if kept is None else kept
+        if not np.all(np.isfinite(left)):
+            return np.full_like(points, np.inf), kept
+        return lu_solve(kept, left.ravel()).reshape(points.shape) * self.scales, kept
+
     def _film(self, points) -> float:
         """Thinnest film (m) at points (N, n)."""
         states = (self.segment.gap_state(tau, self.model.vector(q, 0.0 * q))
-                  for tau, q in zip(self.times(len(points)), points, strict=True))  # fmt: skip
+                  for tau, q in zip(self.times(len(points)), points[:, : self.n], strict=True))  # fmt: skip
         return min(h_min(self.model.face, s)[0] for s in states)
 
     def _left(self, points, rates, accelerations) -> np.ndarray:
@@ -196,17 +209,19 @@ class HarmonicBalance:
 
     def _last_harmonics(self, points) -> float:
         """Largest of the last harmonics, in units of the scales."""
-        series = np.abs(np.fft.rfft(points / self.scales, axis=0)) * 2.0 / len(points)
+        series = np.abs(np.fft.rfft(points / self.model.scales[: points.shape[1]], axis=0)) * 2.0 / len(points)
         return float(np.max(series[-max(2, int(LAST * len(series))) :]))
 
     # --- what an orbit is like ------------------------------------------------------------------------------
 
     def _orbit(self, points, left: float) -> Orbit:
-        start = self.model.vector(points[0], self.derivatives(points)[0][0])[: self.model.unknowns.n_mechanical]
+        rates, n = self.derivatives(points)[0], self.n
+        start = self.model.vector(points[0, :n], rates[0, :n])[: self.model.unknowns.n_mechanical]
         return Orbit(self.period, start, None, None, left, 0, self.extremes(points), points)
 
     def extremes(self, points, per_period: int | None = None) -> dict:
         """As `Shooter.extremes`, of points (N, n)."""
+        points = points[:, : self.n]
         rates = self.derivatives(points)[0]
 
         def seen(tau):

@@ -93,7 +93,7 @@ class Follower:
         closed film.  The gap closes ever more slowly (the seal opens axially), so a secant stops short of touch.
         Raises NoOrbit also where the orbit at the forcing `most`, the last that is followed, does not touch."""
         clearance = Model(self.scene(0.0), 1e-6).clearance if self.touch else 1.0
-        low, low_left, step = 0.0, 1.0 - (self.touch / clearance or self.margin), 0.4 * linear
+        low, low_left, step, longest = 0.0, 1.0 - (self.touch / clearance or self.margin), 0.4 * linear, np.inf
         for _ in range(80):
             value = min(low + step, most)
             try:
@@ -101,19 +101,20 @@ class Follower:
             except TooMuchWork:
                 raise
             except NoOrbit:
-                step *= 0.5
+                step = longest = 0.5 * step
                 if abs(step) < 1e-6 * linear:
                     raise
                 continue
             slope = (left - low_left) / (value - low)
             low, low_left = value, left
-            if abs(left) < 1e-6 or abs(step) < tolerance * value:
+            # Where steps were cut a short one says nothing of how far touch is.
+            if abs(left) < 1e-6 or abs(left) < tolerance * value * abs(slope):
                 return float(value - left / slope)
             if value == most and left > 0.0:
                 raise NoOrbit("the last orbit that may be followed does not touch")
             aim = 0.3 * left if left > 0.03 else 0.0
             # Where tilting opens the thinnest film, too, no secant knows how far.
-            step = min((aim - left) / slope, 0.2 * linear) if slope < 0.0 else 0.2 * linear
+            step = min((aim - left) / slope if slope < 0.0 else np.inf, 0.2 * linear, longest)
             if value > 20 * linear:
                 raise NoOrbit("no touch up to twenty times the linear onset")
         raise NoOrbit("the path of orbits did not reach touch in 80 steps")

@@ -4,7 +4,6 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from scipy.optimize import brentq
 
 from ..dynamics import modes
 from ..dynamics.imposed_motion import rest_state
@@ -139,6 +138,8 @@ def limit_of_forcing(model_of: Callable[[float], Model], most: float) -> dict | 
     ends = beyond(0.0), beyond(most)
     if not ends[0] < 0.0 <= ends[1] < math.inf:
         return None
+    from scipy.optimize import brentq
+
     value = float(brentq(beyond, 0.0, most, rtol=LOCATED))
     return {"value": value, "by": found(value)[1]}
 
@@ -181,6 +182,8 @@ def linear_onset(scene, key: str, rough: float = 0.0) -> tuple[float, float]:
         high *= 2
         if high > LARGEST:
             raise NoOnset(f"linear theory does not touch at any {key}: it does not move the gap")
+    from scipy.optimize import brentq
+
     value = brentq(lambda v: excess(v)[0], 0.0, high, xtol=1e-16, rtol=1e-13)
     return float(value), float(excess(value)[1])
 

@@ -7,6 +7,7 @@ from functools import partial
 
 import numpy as np
 
+from ..analysis.film_balance import FilmBalance
 from ..analysis.harmonic_balance import HarmonicBalance, NotSmooth
 from ..analysis.shooting import ForcedWave, NoOrbit, Orbit, Shooter
 from ..answers import Answer, Axis, Level, Panel, Series, Table, table_of
@@ -15,6 +16,7 @@ from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
 from ..dynamics.signals import signals
 from ..faces.film_thickness import h_min
+from ..faces.geometry import GX, GY
 from ..numerics.piecewise_linear import initially
 from ..quantities import in_words
 from ..scenario.errors import ScenarioError
@@ -43,6 +45,7 @@ INFO = Info(
 FEW, PER_CYCLE, MOST = 4, 48, 20_000
 # Turns of a run without a period that are drawn, and samples of each.
 SHOWN, PER_TURN = 20, 64
+NOT_KNOWN = "Whether the seal keeps it is not known: the film stores."
 # Accuracy of the orbit that is shown, at least.
 SHARP = 1e-8
 
@@ -74,9 +77,13 @@ def run(scenario, settings, tools) -> Answer:
         try:
             return _turning(ForcedWave(scenario.scene, scenario.run.accuracy), settings)
         except NoOrbit:
+            pass
+        try:
+            finder = _finder(FilmBalance, scenario, settings)
+        except NoOrbit:
             return _time_domain(scenario, str(reason))
-    linear = finder.model.linear_scene()
-    critical, verdict = critical_speed(finder.model), modes.verdict(linear.modes())
+    linear, stores = finder.model.linear_scene(), finder.model.interface.stores
+    critical, verdict = None if stores else critical_speed(finder.model), modes.verdict(linear.modes())
     try:
         finder, orbit, waves = _orbit(finder, scenario, settings)
     except NoOrbit as reason:
@@ -98,8 +105,8 @@ def run(scenario, settings, tools) -> Answer:
         rows = _near_threshold(scenario, settings, critical, tools)
     numbers = {
         "period": orbit.period,
-        "multipliers": [[float(m.real), float(m.imag)] for m in orbit.multipliers],
-        "stable": orbit.stable,
+        "multipliers": None if stores else [[float(m.real), float(m.imag)] for m in orbit.multipliers],
+        "stable": None if stores else orbit.stable,
         "residual": orbit.residual,
         "periods_used": orbit.periods_used,
         "h_min": waves["h_min"],
@@ -111,9 +118,9 @@ def run(scenario, settings, tools) -> Answer:
         "near_threshold": rows,
         "critical_speed": critical,
     }
-    kind = "stable" if orbit.stable else "UNSTABLE"
+    kind = "found" if stores else "stable" if orbit.stable else "UNSTABLE"
     found = f"The periodic steady state is {kind}; h_min {in_words('h_min', waves['h_min']['value'], digits=5)}."
-    return Answer(numbers, found, _tables(numbers), _panels(numbers))
+    return Answer(numbers, found, _tables(numbers), _panels(numbers), [NOT_KNOWN] if stores else [])
 
 
 def _turning(wave, settings) -> Answer:
@@ -135,8 +142,7 @@ def _turning(wave, settings) -> Answer:
     }  # fmt: skip
     film = in_words("h_min", low["value"], digits=5)
     found = f"The steady state turns with its forcing, at {in_words('speed', wave.speed)}; h_min {film}."
-    note = "Whether the seal keeps it is not known: the film stores."
-    return Answer(numbers, found, _tables(numbers), _panels(numbers), [note])
+    return Answer(numbers, found, _tables(numbers), _panels(numbers), [NOT_KNOWN])
 
 
 def _finder(kind, scenario, settings):
@@ -175,9 +181,21 @@ def _linear_film(finder, samples) -> dict:
 
 def _waves(model, waves) -> dict:
     """Relative tilt and h_min at some times, from the run's own signals; of conditions that do not change."""
+    if model.unknowns.film_unknowns:
+        return _without_film(model, waves)
     columns = signals(model.segment(), waves["times"], waves["displacements"], waves["rates"])
     names = ("time", "relative_tilt_x", "relative_tilt_y", "relative_misalignment", "h_min", "shaft_angle")
     return {name: [float(x) for x in columns[name]] for name in names}
+
+
+def _without_film(model, waves) -> dict:
+    """The same of the rings' motion alone, for a film whose forces have more to them."""
+    segment, rows = model.segment(), []
+    for tau, q, rate in zip(*(waves[name] for name in ("times", "displacements", "rates")), strict=True):
+        s = segment.gap_state(tau, model.vector(q, rate))
+        rows.append([tau, s[GX], s[GY], np.hypot(s[GX], s[GY]), h_min(model.face, s)[0]])
+    names = ("time", "relative_tilt_x", "relative_tilt_y", "relative_misalignment", "h_min")
+    return {name: [float(x) for x in column] for name, column in zip(names, zip(*rows, strict=True), strict=True)}
 
 
 def _tables(numbers) -> list[Table]:

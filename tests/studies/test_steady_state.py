@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from in_process import InProcess
 from oracles import tilt_roots
+from scenes import started
 
 import sealdyn
 from sealdyn.analysis.shooting import Shooter
@@ -13,6 +14,8 @@ from sealdyn.archive import read_study
 from sealdyn.dynamics.model import Model
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.simulation.margin import steady_extremes
+from sealdyn.solvers.contract import Recorder
+from sealdyn.solvers.integrate import solve
 from sealdyn.studies import steady_state
 from sealdyn.studies._runner import run_study
 
@@ -169,3 +172,21 @@ def test_a_film_that_stores_turns_with_its_forcing():
     assert least == pytest.approx(most) and 0.0 < found["h_min"]["value"] < model.clearance
     assert orbit["relative_tilt_x"][-1] == pytest.approx(orbit["relative_tilt_x"][0])
     assert found["stable"] is None and found.notes
+
+
+@pytest.mark.parametrize("name, turns, forced", [
+    ("gas_reynolds_reference", 15, ["rotor.runout=1 mrad", "film.gas_reynolds.cells=[4, 24]"]),
+    ("dry_gas_seal", 4, ["stator.misalignment=0.1 mrad"]),
+])  # fmt: skip
+def test_a_film_that_stores_under_two_forcings_is_where_a_run_in_time_ends(name, turns, forced):
+    scenario = sealdyn.read_scenario(SCENARIOS / f"{name}.toml", forced)
+    found = steady_state.run(scenario, steady_state.Settings(samples=32), InProcess())
+    assert found["multipliers"] is None and found["stable"] is None and found.notes
+    ready = started(scenario.scene, turns * found["period"], 1e-5)
+    scales, recorder = ready.model.scales[: ready.model.unknowns.n], Recorder(found["period"])
+    start = np.array([found["start"][key] for key in ready.model.unknowns.names])
+    ready.y0[: len(start)] = start + 0.01 * scales
+    ready.segment(0).settle_film(0.0, ready.y0)
+    solve(ready, "ida", 1e-5, recorder)
+    away = np.max(np.abs(recorder.arrays()[1] - start) / scales, axis=1)
+    assert away[0] == pytest.approx(0.01) and away[-1] < 1e-4
