@@ -11,7 +11,7 @@ from ..scene.patterns import grooves_of, waves_of
 from ..scene.rings import ROTOR, STATOR, stuck_support
 from ..scene.scene import SceneError
 from .equilibrium import axial_shift
-from .imposed_motion import AXIAL, FIXED_AXIS, MOMENT, OWN, ROW, TURNING, UNBALANCE
+from .imposed_motion import AXIAL, FIXED_AXIS, FIXED_MOMENT, ON_RING, OWN, PULL, ROW, TURNING, UNBALANCE
 from .interface import rest_state
 from .intervals import constant_and_slope, modulo_turn
 from .modes import MOTIONS, QUARTER_TURN, FilmDoubt, Harmonic, LinearScene, RingNumbers
@@ -186,10 +186,9 @@ def _whirl(linear) -> Whirl | None:
 
 
 def check_harmonic(segment) -> None:
-    """Raises SceneError where samples or a sweep move a carrier."""
-    for ring in segment.sampled:
-        key = "housing.motion" if ring == STATOR else "shaft.motion"
-        raise SceneError(key, "motion by samples, which has no harmonics", "tones, or a run in time")
+    """Raises SceneError where samples move a carrier or pull at a ring, or a sweep does."""
+    for key in segment.records:
+        raise SceneError(key, "samples, which have no harmonics", "tones, or a run in time")
     if not segment.harmonic:
         key, _ = sweeps_of(segment.model.scene)[0]
         raise SceneError(key, "a sweep, which has no harmonics", "tones, or a run in time")
@@ -202,9 +201,12 @@ def harmonics(segment) -> list[Harmonic]:
     for ring, kind, amplitude, _, cos, sin, a0, a1, _ in segment.rows.reshape(-1, ROW):
         phasor = amplitude * np.exp(1j * a0)
         shape = np.zeros(3, dtype=complex)
-        if kind == AXIAL:
+        if kind == PULL and amplitude and not a1 and not segment.model.interface.film.constant:
+            # What stands moves the gap about which the film is linearised (equilibrium.py).
+            continue
+        if kind in (AXIAL, PULL):
             shape[0] = phasor
-        elif kind != FIXED_AXIS:
+        elif kind not in (FIXED_AXIS, FIXED_MOMENT):
             shape[1], shape[2] = phasor, -1j * phasor
         else:
             shape[1], shape[2] = phasor * cos, phasor * sin
@@ -212,7 +214,7 @@ def harmonics(segment) -> list[Harmonic]:
         if kind == UNBALANCE:
             shape *= 1j * a1**2
         moves, own = kind in (AXIAL, TURNING, FIXED_AXIS), kind == OWN
-        moment = shape if kind in (MOMENT, UNBALANCE) else None
+        moment = shape if kind in ON_RING else None
         found.append(Harmonic(a1, int(ring), shape if moves else none, shape if own else none, moment))
     return found
 

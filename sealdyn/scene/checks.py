@@ -6,10 +6,11 @@ import math
 from ..numerics.piecewise_linear import PiecewiseLinear, initially, points
 from ..units import Temperature, Viscosity
 from .contact import contact_errors, contact_thresholds, film_in_words, limit_in_words
-from .excitation import motion_errors, random_errors
+from .excitation import ACCELERATIONS, MOTION_COLUMNS, acceleration_errors, random_errors, sample_errors
 from .film import aligned_gaps, coned, follows_speed, pads_errors, profile_errors, reynolds_errors
 from .gas import GASES, gas_of
 from .liquid import heat_errors, liquid_errors
+from .loads import LOAD_COLUMNS
 from .patterns import grooves_errors, grooves_of, waves_of, waviness_errors
 from .rings import RING_NAMES, body_errors, elastic_errors
 from .scene import SceneError
@@ -47,8 +48,14 @@ def scene_errors(scene, run) -> list[SceneError]:
         expected = "[rotor.support] or [stator.support]: the ring that floats"
         bad.append(SceneError("rotor.support", "no support on either ring", expected))
     for name, table in (("housing", scene.housing), ("shaft", scene.shaft)):
-        for key, *words in motion_errors(table.motion) if table.motion else ():
+        given = (*MOTION_COLUMNS, *ACCELERATIONS)
+        wrong = (sample_errors(table.motion, given) or acceleration_errors(table.motion)) if table.motion else ()
+        for key, *words in wrong:
             bad.append(SceneError(f"{name}.motion.{key}", *words))
+    for name, ring in (("stator", scene.stator), ("rotor", scene.rotor)):
+        samples = ring.load.samples if ring.load else None
+        for key, *words in sample_errors(samples, LOAD_COLUMNS) if samples else ():
+            bad.append(SceneError(f"{name}.load.samples.{key}", *words))
     bad += _broken(_vibrations, scene.housing) + _broken(_run, scene.shaft, run)
     if not bad and (run.start == "rest" or (run.start == "auto" and scene.initial.given)):
         bad += _broken(_open_at_start, scene)
@@ -369,7 +376,7 @@ def turns_of(speed) -> float:
     return angle / (2 * math.pi)
 
 
-RIGID_LEAVES = ("mass", "transverse_inertia", "polar_inertia", "body", "mass_centre", "unphysical_inertia")
+RIGID_LEAVES = ("mass", "transverse_inertia", "polar_inertia", "body", "mass_centre", "unphysical_inertia", "load")
 
 
 def unused(scene, given: set[str]) -> list[str]:

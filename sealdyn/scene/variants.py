@@ -24,11 +24,28 @@ ALTERNATIVES = {
     "samples_per_turn": ("samples",),
     "displacement": ("acceleration",),
     "acceleration": ("displacement",),
-    "file": ("time", "axial", "tilt_x", "tilt_y"),
+    "file": (
+        "time",
+        "axial",
+        "tilt_x",
+        "tilt_y",
+        "axial_acceleration",
+        "tilt_x_acceleration",
+        "tilt_y_acceleration",
+        "force",
+        "moment_x",
+        "moment_y",
+    ),
     "time": ("file",),
     "axial": ("file",),
     "tilt_x": ("file",),
     "tilt_y": ("file",),
+    "axial_acceleration": ("file", "axial"),
+    "tilt_x_acceleration": ("file", "tilt_x"),
+    "tilt_y_acceleration": ("file", "tilt_y"),
+    "force": ("file",),
+    "moment_x": ("file",),
+    "moment_y": ("file",),
     "radius": ("tilt_stiffness", "tilt_damping", "diameter"),
     "diameter": ("tilt_stiffness", "tilt_damping", "radius"),
     "tilt_stiffness": ("radius", "diameter"),
@@ -46,7 +63,7 @@ LEFT_OUT = {
     "secondary-seal": ("stator.secondary_seal", "rotor.secondary_seal"),
 }
 CARRIED = ("mass", "transverse_inertia", "polar_inertia", "body", "mass_centre", "unphysical_inertia", "misalignment",
-           "support", "secondary_seal")  # fmt: skip
+           "support", "secondary_seal", "load")  # fmt: skip
 # What a face keeps, whichever side its ring is on.
 FACE = ("waviness", "grooves")
 
@@ -168,8 +185,8 @@ def unforced(scene: Scene, speed: float) -> Scene:
     return replace(
         scene,
         shaft=Shaft(speed=speed),
-        rotor=replace(scene.rotor, misalignment=0.0, runout=0.0, axial_runout=[], mass_centre=None),
-        stator=replace(scene.stator, misalignment=0.0, mass_centre=None),
+        rotor=replace(scene.rotor, misalignment=0.0, runout=0.0, axial_runout=[], mass_centre=None, load=None),
+        stator=replace(scene.stator, misalignment=0.0, mass_centre=None, load=None),
         housing=Housing(),
     )
 
@@ -186,6 +203,11 @@ def _constant(scene: Scene, value_of: Callable[[PiecewiseLinear], float]) -> Sce
         table = getattr(scene, name)
         constant = {key: value_of(held) for key, held in vars(table).items() if isinstance(held, PiecewiseLinear)}
         scene = replace(scene, **{name: replace(table, **constant)})
+    for name in RING_NAMES:
+        ring = getattr(scene, name)
+        if ring.load is not None:
+            held = {key: value_of(h) for key, h in vars(ring.load).items() if isinstance(h, PiecewiseLinear)}
+            scene = replace(scene, **{name: replace(ring, load=replace(ring.load, **held))})
     return scene
 
 
@@ -239,7 +261,7 @@ def with_both_flexible_rings(scene: Scene) -> Scene:
     if present == "FMSR":
         return scene
     old, new = (scene.rotor, scene.stator) if present == "FMR" else (scene.stator, scene.rotor)
-    carried = {name: getattr(old, name) for name in CARRIED if name != "misalignment"}
+    carried = {name: getattr(old, name) for name in CARRIED if name not in ("misalignment", "load")}
     if present == "FMR":
         return replace(scene, stator=replace(new, **carried))
     own = {"misalignment": new.runout, "misalignment_phase": new.runout_phase, "runout": 0.0, "runout_phase": 0.0}
