@@ -31,7 +31,8 @@ def linear_scene(model, interval, speed: float | None = None, shift: float | Non
     another speed it needs no other linearisation.
     **Valid** no floor of the pressure that small motion meets, no waves, which have a wedge of their own, and neither
     inertia of the fluid, grooves nor coning that follows the speed, which move the gap with it: such a film is
-    linearised at every speed.  Raises SceneError at a speed at which no aligned film holds the closing force.
+    linearised at every speed, as is one whose numbers are given at each.  Raises SceneError at a speed at which no
+    aligned film holds the closing force.
     """
     w_r = constant_and_slope(model.scene.shaft.speed, interval)[0] if speed is None else speed
     w_s = constant_and_slope(model.scene.stator.speed, interval)[0]
@@ -132,7 +133,8 @@ def tilted_rest(model, interval, rings, spin: float, shift: float):
 def linear_in_speed(model, interval=None) -> bool:
     """Whether the matrices at any shaft speed, the rest as at an interval's start, follow from one linearisation of the
     film."""
-    plain = model.interface.floor_is_clear(interval) and model.interface.unknowns is None
+    interface = model.interface
+    plain = interface.floor_is_clear(interval) and interface.unknowns is None and not interface.film.as_given
     return plain and not moves_with_speed(model.given) and not waves_of(model.scene)
 
 

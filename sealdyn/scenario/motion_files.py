@@ -8,9 +8,11 @@ import os
 import re
 import stat
 from pathlib import Path
+from typing import get_type_hints
 
 from ..scene.excitation import ACCELERATIONS, MOTION_COLUMNS
 from ..scene.loads import LOAD_COLUMNS, Moment
+from ..scene.tabulated import COLUMNS, Tabulated
 from ..units import (
     MOST_LISTED,
     SECONDS,
@@ -20,6 +22,7 @@ from ..units import (
     Force,
     Length,
     QuantityError,
+    quantity_of,
     quoted,
 )
 from .errors import ScenarioError
@@ -33,14 +36,22 @@ KINDS = {
 }  # fmt: skip
 MOTION = {name: KINDS[name][0] for name in ("time", *MOTION_COLUMNS, *ACCELERATIONS)}
 LOADS = {name: KINDS[name][0] for name in ("time", *LOAD_COLUMNS)}
+FILM = {name: quantity_of(get_type_hints(Tabulated, include_extras=True)[name]) for name in COLUMNS}
 # Tables of samples, dotted.
-PLACES = {"shaft.motion": MOTION, "housing.motion": MOTION, "stator.load.samples": LOADS, "rotor.load.samples": LOADS}
+PLACES = {
+    "shaft.motion": MOTION,
+    "housing.motion": MOTION,
+    "stator.load.samples": LOADS,
+    "rotor.load.samples": LOADS,
+    "film.tabulated": FILM,
+}
 # "axial", "axial (um)" and "axial [um]".
 TITLE = re.compile(r"\s*(\w+)\s*(?:[(\[]\s*(.*?)\s*[)\]])?\s*")
 BEGINNING = re.compile(r"\s*(\w+)")
 NUMBER = re.compile(r"\s*[+-]?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|nan|inf)\s*", re.IGNORECASE)
 WITH_COMMA = re.compile(r"\s*[+-]?[0-9]*,[0-9]+(?:[eE][+-]?[0-9]+)?\s*")
 MOST_BYTES = 1 << 26
+TABLE = "table."
 # Below this a number is nothing: what is left of a zero.
 NOTHING = 1e-25
 
@@ -53,7 +64,7 @@ def with_columns(
     of that name.  What is wrong with a file goes to `wrong`, keys of columns without a unit to `bare`."""
     for table, known in PLACES.items():
         motion, kept = _samples(raw, table), _samples(held, table)
-        if not isinstance(motion.get("file"), str) or "time" in motion:
+        if not isinstance(motion.get("file"), str) or next(iter(known)) in motion:
             continue
         file, key = motion["file"], f"{table}.file"
         try:
@@ -63,7 +74,9 @@ def with_columns(
         except QuantityError as error:
             wrong.append(ScenarioError(name, key, error.found, error.expected))
             # Another thing that is wrong is not this one's fault.
-            given = {"time": [float(n) for n in range(6)], list(known)[1]: [0.0] * 5 + [1e-9]}
+            first, second, *_ = known
+            given = {first: [float(n) for n in range(1, 7)], second: [0.0] * 5 + [1e-9]}
+            given |= {"time": [float(n) for n in range(6)]} if first == "time" else {}
         columns = {column: given[column] for column in known if given.get(column) is not None}
         raw = _replaced(raw, table.split("."), {**columns, **motion})
     return raw
@@ -85,13 +98,14 @@ def _samples(tables, table: str) -> dict:
 def refuse_files_elsewhere(raw: dict, name: str, held: dict, asked) -> None:
     """Raises ScenarioError where an archive's scenario, its tables `raw`, names a file that the archive does not hold
     (`held`: its resolved tables): a stranger's words open none.  Keys that the user has `asked` for are his own."""
-    for table in PLACES:
+    for table, known in PLACES.items():
         motion, kept = _samples(raw, table), _samples(held, table)
         steps = f"{table}.file".split(".")
         own = asked & {".".join(steps[:n]) for n in range(1, len(steps) + 1)}
-        if own or "time" in motion or "file" not in motion:
+        first = next(iter(known))
+        if own or first in motion or "file" not in motion:
             continue
-        if kept.get("file") != motion["file"] or "time" not in kept:
+        if kept.get("file") != motion["file"] or first not in kept:
             key = f"{table}.file"
             found = f"{quoted(motion['file'])}, which the archive does not hold"
             raise ScenarioError(name, key, found, f"--set {key}=FILE, where it is meant")
@@ -104,7 +118,9 @@ def read_motion(path: Path, known=MOTION) -> dict[str, list[float]]:
 
 
 def _a_file(known) -> str:
-    _, *others = known
+    first, *others = known
+    if first != "time":
+        return f"a CSV file with a line of names, {first} and its like with units in brackets, or HDF5 (.h5)"
     names = f"{', '.join(others[:2])} or {others[2]}" + ("" if len(others) == 3 else " (or their ..._acceleration)")
     return f"a CSV file with a line of names, time and {names} with units in brackets, or HDF5 (.h5)"
 
@@ -121,7 +137,7 @@ def _columns(path: Path, known) -> dict[str, tuple[list[float], str]]:
     if size > MOST_BYTES:
         raise QuantityError(f"{quoted(path.name)}, {size} bytes", f"at most {MOST_BYTES} bytes")
     columns = _hdf5(path, known) if path.suffix in (".h5", ".hdf5") else _csv(path, known)
-    if "time" not in columns or len(columns) < 2:
+    if next(iter(known)) not in columns or len(columns) < 2:
         there = ", ".join(columns) or "none of them"
         raise QuantityError(f"{quoted(path.name)} with the columns {there}", a_file)
     return {name: (_in_si(path.name, name, known[name], *columns[name]), columns[name][1]) for name in columns}
@@ -144,9 +160,11 @@ def _hdf5(path: Path, known) -> dict[str, tuple[list[float], str]]:
     from ..archive.columns import read_columns
 
     try:
-        return read_columns(path, tuple(known), MOST_LISTED)
+        found = read_columns(path, (*known, *(TABLE + name for name in known)), MOST_LISTED)
     except ArchiveError as error:
         raise QuantityError(str(error), _a_file(known)) from None
+    # As they stand in the archive of a study.
+    return {name.removeprefix(TABLE): column for name, column in found.items()}
 
 
 def _csv(path: Path, known) -> dict[str, tuple[list[float], str]]:

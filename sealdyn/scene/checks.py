@@ -16,6 +16,7 @@ from .rings import RING_NAMES, body_errors, elastic_errors
 from .scene import SceneError
 from .secondary_seal import secondary_seal_errors
 from .sweep import sweep_errors
+from .tabulated import tabulated_errors
 
 # Of keys that may not step, if not rad.
 UNITS = {"temperature": "K", "speed": "rad/s", "outer_pressure": "Pa", "inner_pressure": "Pa"}
@@ -34,6 +35,7 @@ def scene_errors(scene, run) -> list[SceneError]:
     bad += _broken(_cavitation, scene.film) + _broken(_liquid if scene.film.gas is None else _gas, scene.film)
     bad += [SceneError(*error) for error in (*waviness_errors(scene), *elastic_errors(scene), *grooves_errors(scene))]
     bad += [SceneError(*error) for error in (heat_errors(scene) if scene.film.heat is not None else ())]
+    bad += [SceneError(*error) for error in (tabulated_errors(scene) if scene.film.model == "tabulated" else ())]
     bad += _broken(_closing, scene)
     for name, ring in (("stator", scene.stator), ("rotor", scene.rotor)):
         bad += _broken(_ring, name, ring) + _broken(check_no_step, name, ring)
@@ -405,6 +407,8 @@ def unused(scene, given: set[str]) -> list[str]:
     if scene.film.gas is not None:
         leaves += [f"film.{key}" for key in ("density", "specific_heat", "vapour_pressure", "coefficients")]
         leaves += [f"film.{name}." for name in ("gas_dam", "gas_reynolds") if scene.film.model not in (name, "auto")]
+    if scene.film.model != "tabulated":
+        leaves.append("film.tabulated.")
     if scene.film.model != "linear":
         leaves.append("film.coefficients")
     elif scene.film.coefficients != "radial":

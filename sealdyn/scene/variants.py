@@ -11,9 +11,11 @@ from dataclasses import fields, replace
 from typing import Any
 
 from ..numerics.piecewise_linear import PiecewiseLinear, points
-from .excitation import Housing, Shaft
+from .excitation import ACCELERATIONS, MOTION_COLUMNS, Housing, Shaft
+from .loads import LOAD_COLUMNS
 from .rings import INERTIAL, RING_NAMES, Rotor, Stator, stuck_support, with_inertia
 from .scene import Closing, Initial, RingStart, Scene, SceneError
+from .tabulated import COLUMNS
 
 # A key that is given takes its alternatives in the same table away.
 ALTERNATIVES = {
@@ -24,28 +26,9 @@ ALTERNATIVES = {
     "samples_per_turn": ("samples",),
     "displacement": ("acceleration",),
     "acceleration": ("displacement",),
-    "file": (
-        "time",
-        "axial",
-        "tilt_x",
-        "tilt_y",
-        "axial_acceleration",
-        "tilt_x_acceleration",
-        "tilt_y_acceleration",
-        "force",
-        "moment_x",
-        "moment_y",
-    ),
+    "file": ("time", *MOTION_COLUMNS, *ACCELERATIONS, *LOAD_COLUMNS, *COLUMNS),
     "time": ("file",),
-    "axial": ("file",),
-    "tilt_x": ("file",),
-    "tilt_y": ("file",),
-    "axial_acceleration": ("file", "axial"),
-    "tilt_x_acceleration": ("file", "tilt_x"),
-    "tilt_y_acceleration": ("file", "tilt_y"),
-    "force": ("file",),
-    "moment_x": ("file",),
-    "moment_y": ("file",),
+    **dict.fromkeys((*MOTION_COLUMNS, *ACCELERATIONS, *LOAD_COLUMNS), ("file",)),
     "radius": ("tilt_stiffness", "tilt_damping", "diameter"),
     "diameter": ("tilt_stiffness", "tilt_damping", "radius"),
     "tilt_stiffness": ("radius", "diameter"),

@@ -223,7 +223,7 @@ def reynolds_comparison(run: RunState) -> dict | None:
     model = run.model
     scene, (film, f) = model.scene, model.observed
     floor = scene.film.cavitation_pressure is not None
-    if model.unknowns.film_unknowns or waves_of(scene) or film.constant:
+    if model.unknowns.film_unknowns or waves_of(scene) or film.constant or film.as_given:
         return None
     options = Reynolds(cells_r=CELLS[0], cells_theta=CELLS[1], roughness="none", sectors=1,
                        cavitation="mass-conserving" if floor else "none")  # fmt: skip
