@@ -68,7 +68,9 @@ def with_columns(
             continue
         file, key = motion["file"], f"{table}.file"
         try:
-            columns = {} if kept.get("file") == file else _columns((folder or Path()) / file, known)
+            columns = (
+                {} if kept.get("file") == file else _columns((folder or Path()) / file, known, motion.get("titles"))
+            )
             given = {column: values for column, (values, _) in columns.items()} or kept
             bare += [f"{table}.{column}" for column, (_, unit) in columns.items() if not unit]
         except QuantityError as error:
@@ -119,14 +121,15 @@ def read_motion(path: Path, known=MOTION) -> dict[str, list[float]]:
 
 def _a_file(known) -> str:
     first, *others = known
-    if first != "time":
-        return f"a CSV file with a line of names, {first} and its like with units in brackets, or HDF5 (.h5)"
-    names = f"{', '.join(others[:2])} or {others[2]}" + ("" if len(others) == 3 else " (or their ..._acceleration)")
-    return f"a CSV file with a line of names, time and {names} with units in brackets, or HDF5 (.h5)"
+    names = f"{first} and its like"
+    if first == "time":
+        names = f"time and {', '.join(others[:2])} or {others[2]}"
+        names += "" if len(others) == 3 else " (or their ..._acceleration)"
+    return f"a CSV file with a line of names (or titles for it), {names} with units in brackets, or HDF5 (.h5)"
 
 
-def _columns(path: Path, known) -> dict[str, tuple[list[float], str]]:
-    """Columns of a file, SI, and the unit in which it has them."""
+def _columns(path: Path, known, titles=None) -> dict[str, tuple[list[float], str]]:
+    """Columns of a file, SI, and the unit in which it has them; `titles` of a CSV file without a line of names."""
     a_file = _a_file(known)
     try:
         size = path.stat().st_size if path.is_file() else None
@@ -136,7 +139,7 @@ def _columns(path: Path, known) -> dict[str, tuple[list[float], str]]:
         raise QuantityError(f"{quoted(str(path))}, no such file", a_file)
     if size > MOST_BYTES:
         raise QuantityError(f"{quoted(path.name)}, {size} bytes", f"at most {MOST_BYTES} bytes")
-    columns = _hdf5(path, known) if path.suffix in (".h5", ".hdf5") else _csv(path, known)
+    columns = _hdf5(path, known) if path.suffix in (".h5", ".hdf5") else _csv(path, known, titles)
     if next(iter(known)) not in columns or len(columns) < 2:
         there = ", ".join(columns) or "none of them"
         raise QuantityError(f"{quoted(path.name)} with the columns {there}", a_file)
@@ -167,24 +170,27 @@ def _hdf5(path: Path, known) -> dict[str, tuple[list[float], str]]:
     return {name.removeprefix(TABLE): column for name, column in found.items()}
 
 
-def _csv(path: Path, known) -> dict[str, tuple[list[float], str]]:
+def _csv(path: Path, known, titles) -> dict[str, tuple[list[float], str]]:
     try:
         text = whole_file(path, MOST_BYTES).decode("utf-8-sig")
     except (OSError, UnicodeDecodeError):
         raise QuantityError(f"{quoted(path.name)}, no readable text", _a_file(known)) from None
     rows = _rows(path.name, text, _a_file(known))
+    if isinstance(titles, list):
+        # What is no text is told where the keys are read.
+        rows = [(0, [str(title) for title in titles]), *rows]
     if not rows:
         raise QuantityError(f"{quoted(path.name)}, an empty file", _a_file(known))
     if len(rows) - 1 > MOST_LISTED:
         raise QuantityError(f"{quoted(path.name)}, {len(rows) - 1} samples", f"at most {MOST_LISTED}")
-    (_, titles), *rows = rows
+    (_, names), *rows = rows
     for line, row in rows:
         # What a decimal comma makes of a number, where commas separate.
-        if len(row) > len(titles) and any(cell.strip() for cell in row[len(titles) :]):
-            found = f"{quoted(path.name)}, line {line}: {len(row)} cells below {len(titles)} names"
+        if len(row) > len(names) and any(cell.strip() for cell in row[len(names) :]):
+            found = f"{quoted(path.name)}, line {line}: {len(row)} cells below {len(names)} names"
             raise QuantityError(found, "one cell below each name, and a decimal point")
     found = {}
-    for place, title in enumerate(titles):
+    for place, title in enumerate(names):
         read, begins = TITLE.fullmatch(title), BEGINNING.match(title)
         name = begins[1].lower() if begins else ""
         if name not in known:

@@ -53,6 +53,8 @@ class Motion(Strict):
 
     file: str | None = field(default=None, compare=False)
     """CSV or HDF5 with these columns, beside the scenario; columns that are given here are not read from it."""
+    titles: list[str] | None = field(default=None, compare=False)
+    """Names of the columns of a CSV file that has no line of them, "time (ms)" and the like, "" for one not read."""
     time: Listed[Sample] = ()
     """Of the samples, increasing, from 0 or before to the end of the run or beyond."""
     axial: Listed[Displacement] | None = None

@@ -37,6 +37,8 @@ class LoadSamples(Strict):
 
     file: str | None = field(default=None, compare=False)
     """CSV or HDF5 with these columns, beside the scenario; columns that are given here are not read from it."""
+    titles: list[str] | None = field(default=None, compare=False)
+    """Names of the columns of a CSV file that has no line of them, "time (ms)" and the like, "" for one not read."""
     time: Listed[Sample] = ()
     """Of the samples, increasing, from 0 or before to the end of the run or beyond."""
     force: Listed[Force] | None = None
@@ -77,6 +79,11 @@ class Load(Strict):
 def load_of(ring) -> Load | None:
     """The load on a Stator or Rotor that floats; None without."""
     return ring.load if ring.support else None
+
+
+def standing(load: Load | None) -> Load | None:
+    """What is left of a load of constant numbers where nothing is imposed: the force that moves the aligned rest."""
+    return Load(force=load.force) if load is not None and load.force else None
 
 
 def samples_of_loads(scene) -> dict[int, LoadSamples]:

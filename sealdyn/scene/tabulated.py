@@ -41,6 +41,8 @@ class Tabulated(Strict):
     file: str | None = field(default=None, compare=False)
     """CSV or HDF5 with these columns, beside the scenario, or the archive of `sealdyn study coefficients` with its
     table (`--clearance`, `--speed`, `--frequency`)."""
+    titles: list[str] | None = field(default=None, compare=False)
+    """Names of the columns of a CSV file that has no line of them, "time (ms)" and the like, "" for one not read."""
     k_axial_axial: OneOrListed[Stiff] | None = None
     """Force lost per widening of the gap."""
     k_axial_tilt_x: OneOrListed[CrossStiff] | None = None

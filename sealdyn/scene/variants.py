@@ -12,7 +12,7 @@ from typing import Any
 
 from ..numerics.piecewise_linear import PiecewiseLinear, points
 from .excitation import ACCELERATIONS, MOTION_COLUMNS, Housing, Shaft
-from .loads import LOAD_COLUMNS
+from .loads import LOAD_COLUMNS, standing
 from .rings import INERTIAL, RING_NAMES, Rotor, Stator, stuck_support, with_inertia
 from .scene import Closing, Initial, RingStart, Scene, SceneError
 from .tabulated import COLUMNS
@@ -163,13 +163,14 @@ def frozen_at(scene: Scene, time: float) -> Scene:
 
 def unforced(scene: Scene, speed: float) -> Scene:
     """The scene aligned and free of forcing, at constant conditions (functions of time at zero) and one shaft speed
-    (rad/s), `tilting`."""
+    (rad/s), `tilting`; a constant axial force from outside stays, since the rest hangs on it."""
     scene = tilting(frozen_at_start(scene))
+    rotor, stator, aligned = scene.rotor, scene.stator, {"misalignment": 0.0, "mass_centre": None}
     return replace(
         scene,
         shaft=Shaft(speed=speed),
-        rotor=replace(scene.rotor, misalignment=0.0, runout=0.0, axial_runout=[], mass_centre=None, load=None),
-        stator=replace(scene.stator, misalignment=0.0, mass_centre=None, load=None),
+        rotor=replace(rotor, **aligned, runout=0.0, axial_runout=[], load=standing(rotor.load)),
+        stator=replace(stator, **aligned, load=standing(stator.load)),
         housing=Housing(),
     )
 

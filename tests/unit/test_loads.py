@@ -12,13 +12,15 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from sealdyn.dynamics import equations
+from sealdyn.dynamics.model import Model
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scenario.reader import ScenarioError, parse_scenario, read_scenario
 from sealdyn.scene.excitation import Shaft
 from sealdyn.scene.film import Coefficients
 from sealdyn.scene.loads import Load, LoadSamples, LoadTone
 from sealdyn.scene.scene import SceneError
-from sealdyn.scene.variants import frozen_at
+from sealdyn.scene.secondary_seal import SecondarySeal
+from sealdyn.scene.variants import frozen_at, unforced
 
 FMS = (Path(__file__).parents[2] / "scenarios" / "fms_reference.toml").read_text()
 FILM = Coefficients(tilt_stiffness=5000.0, tilt_damping=3.6, axial_stiffness=2e7, axial_damping=9e3)
@@ -134,6 +136,8 @@ def test_a_constant_force_moves_the_rest(floating):
 
     z = brentq(excess, -0.5 * c, 0.5 * c, xtol=1e-18)
     assert model.axial_shift() == pytest.approx(sign * z, rel=1e-7)
+    # Stability is asked of the same rest.
+    assert Model(unforced(scene, 1000.0)).axial_shift() == pytest.approx(sign * z, rel=1e-7)
     # It begins there, and stays.
     found = run(scene, duration=0.005, accuracy=1e-9, start="steady")
     assert found.q[:, 0] == pytest.approx(z, rel=1e-5)
@@ -181,3 +185,22 @@ def test_a_rigid_ring_feels_no_load():
     assert not prepared(
         replace(scene, rotor=replace(scene.rotor, load=Load(force=5.0))), 0.01, 1e-6
     ).model.axial_shift()
+
+
+def test_a_ring_that_sticks_holds_a_load_up_to_its_friction():
+    ramp = PiecewiseLinear((0.0, 0.04), (0.0, 80.0))
+    scene = loaded(Load(force=ramp), "radial")
+    held = replace(scene.stator, secondary_seal=SecondarySeal(radius=0.035, friction_force=50.0))
+    found = run(replace(scene, stator=held), duration=0.04, accuracy=1e-7)
+    slips = found.times[np.argmax(np.abs(found.q[:, 0]) > 1e-10)]
+    assert 50.0 <= 2000.0 * slips < 50.5 and found.q[-1, 0] > 2e-6
+    assert found.outcome.energy_residual < 1e-8
+
+
+def test_a_file_without_a_line_of_names(tmp_path):
+    (tmp_path / "pull.csv").write_text("".join(f"{n}, x, {10 * n}\n" for n in range(8)))
+    table = TABLE + 'titles = ["time (ms)", "", "force (N)"]\n'
+    (tmp_path / "seal.toml").write_text(FMS + table)
+    found = read_scenario(tmp_path / "seal.toml", ["run.duration=0.005", "run.samples=50"])
+    assert found.scene.stator.load.samples.force == tuple(10.0 * n for n in range(8))
+    assert parse_scenario(found.to_toml(), "seal.toml").scene == found.scene
