@@ -3,12 +3,12 @@
 **Source** Green (1989), eqs. 1-6; Green & Etsion (1985) for the flexibly mounted stator; one equation for
 both rings (k = stator, rotor; W_k the spin of the carrier; sg = +1 stator, -1 rotor):
 
-    m z'' = sg (F_film - F_closing) - D_z (z' - z_c') - K_z (z - z_c)
+    m z'' = sg (F_film - F_closing) - D_z (z' - z_c') - K_z (z - z_c) + F_load
     I gamma'' = sg M_film + i J W gamma' - D_s [(gamma - gamma_c)' - i W (gamma - gamma_c)]
                 - K_s e - dK exp(2 i (phi_k + a)) conj(e) + M_mass,   e = gamma - gamma_c - gamma_own
 
 dK of a support with two tilt stiffnesses, whose axes, at `a`, turn with the carrier (phi_k); M_mass the moment of a
-centre of mass off the axis, of unbalance and weight.
+centre of mass off the axis, of unbalance and weight, and of a load from outside (scene/loads.py), as F_load is.
 **Valid** small tilts (1e-4 rad: exact to 1e-8); a changing speed drops -i J W' gamma.
 Contact of the faces adds to F_film and M_film; friction of a secondary seal (dynamics/secondary_seal.py, of one that
 gives dynamics/elastic_seal.py) acts on its ring, and a ring that sticks rigidly follows its carrier: gamma' = gamma_c'
@@ -53,6 +53,7 @@ from .imposed_motion import (
     INNER_AT,
     LOAD_X,
     LOAD_Y,
+    LOAD_Z,
     OUTER_AT,
     OWN_X,
     OWN_X_RATE,
@@ -192,7 +193,7 @@ def _net(tau, k, p, w, s, power):
     spring_x, spring_y = _tilt_springs(k, p, w)
     gyro_x, gyro_y = -p[ring + POLAR] * spin * v_y, p[ring + POLAR] * spin * v_x
 
-    w[net] = sign * (s[FORCE] + s[CONTACT_FORCE] - closing) + damper + spring
+    w[net] = sign * (s[FORCE] + s[CONTACT_FORCE] - closing) + damper + spring + w[c + LOAD_Z]
     w[net + 1] = sign * (s[MOMENT_X] + s[CONTACT_X]) + damper_x + spring_x + gyro_x + w[c + LOAD_X]
     w[net + 2] = sign * (s[MOMENT_Y] + s[CONTACT_Y]) + damper_y + spring_y + gyro_y + w[c + LOAD_Y]
 
@@ -211,9 +212,10 @@ def _net(tau, k, p, w, s, power):
 @inner_kernel()
 def _works(tau, p, w, s, yp, at):
     """Powers of the elements into yp[at:]: support dampers, film, closing force, carriers (and what turns with them:
-    axes of springs, unbalance; and weight), gyroscopic term (zero), contact and secondary seals, and the sum of
-    absolute powers, springs included; the contact force, whose integral is the impulse, just before them.  The springs'
-    energy is a state function, so what counts as work is that of their moving ends (carrier, own misalignment)."""
+    axes of springs, unbalance; weight, and loads from outside), gyroscopic term (zero), contact and secondary seals,
+    and the sum of absolute powers, springs included; the contact force, whose integral is the impulse, just before
+    them.  The springs' energy is a state function, so what counts as work is that of their moving ends (carrier, own
+    misalignment)."""
     count = PLAIN
     if p[EXTENDED] != 0.0:
         count, yp[at - 1] = PLAIN + 2, s[CONTACT_FORCE]
@@ -227,6 +229,7 @@ def _works(tau, p, w, s, yp, at):
             ring, c, x = k * RING, k * PER_RING, OWN_STATE + 6 * k
             if p[ring + AT_Z] >= 0.0:
                 power[3] -= p[ring + AXIAL_K] * (w[x + Z] - w[c + Z]) * w[c + Z_RATE]
+                power[3] += w[c + LOAD_Z] * w[x + Z_RATE]
             if p[ring + AT_TILT] >= 0.0:
                 m_x, m_y = _tilt_springs(k, p, w)
                 power[3] += m_x * (w[c + TILT_X_RATE] + w[c + OWN_X_RATE])

@@ -17,6 +17,7 @@ from ..numerics.piecewise_linear import PiecewiseLinear, initially
 from ..quantities import resolved
 from ..scene.contact import contact_thresholds
 from ..scene.film import aligned_gaps, coned
+from ..scene.loads import load_of
 from ..scene.patterns import grooves_of, waves_of
 from ..scene.scene import Scene, SceneError
 from .imposed_motion import set_conditions
@@ -190,6 +191,35 @@ def support_stiffness(scene: Scene) -> float:
     return 1 / sum(1 / k for k in stiffness) if all(stiffness) else 0.0
 
 
+def outside_force(model, interval: Interval) -> float:
+    """Force (N) by which what pulls at floating rings from outside at an interval's start opens the gap, on the springs
+    of their supports in series: `sum of +-F K/K_ring`, K that of both; 0 on a film of constant coefficients, about
+    which the pull is one of the harmonics."""
+    if model.interface.film.constant:
+        return 0.0
+    rings = {1.0: model.scene.stator, -1.0: model.scene.rotor}
+    forces = {sign: constant_and_slope(load.force, interval)[0] for sign, r in rings.items() if (load := load_of(r))}
+    soft = [1.0 / max(r.support.axial_stiffness, 1e-12) for r in rings.values() if r.support]
+    return sum(sign * f / max(rings[sign].support.axial_stiffness, 1e-12) for sign, f in forces.items()) / sum(soft)
+
+
+def pulled_apart(model, interval: Interval) -> np.ndarray:
+    """Axial displacement (m) of each floating ring where `outside_force` at an interval's start lets them rest; zeros
+    without one."""
+    pull, scene = outside_force(model, interval), model.scene
+    signs = [sign for sign, ring in ((1.0, scene.stator), (-1.0, scene.rotor)) if ring.support]
+    if not pull:
+        return np.zeros(len(signs))
+    shift = model.axial_shift(interval)
+    if len(signs) == 1:
+        return np.array([signs[0] * shift])
+    stiffness = scene.rotor.support.axial_stiffness
+    excess = support_stiffness(scene) * shift - pull
+    force = constant_and_slope(scene.rotor.load.force, interval)[0] if scene.rotor.load else 0.0
+    rotor = (force - excess) / stiffness if stiffness else 0.0
+    return np.array([rotor + shift, rotor])
+
+
 def axial_excess(model, s, closing: float):
     """Opening force (N) of film and asperities in excess of a closing force (N) and of the supports, as a function of
     the change (m) of the axial gap; tilts, rates and pressures are those of the gap state `s`, which it fills."""
@@ -213,7 +243,7 @@ def axial_shift(model, interval: Interval, speed: float | None = None) -> tuple[
     if speed is not None:
         w_s = s[MEAN_SPIN] - 0.5 * s[SPIN_DIFFERENCE]
         s[MEAN_SPIN], s[SPIN_DIFFERENCE] = 0.5 * (speed + w_s), speed - w_s
-    closing = model.closing.over(interval, film)[0]
+    closing = model.closing.over(interval, film)[0] - outside_force(model, interval)
     excess = axial_excess(model, s, closing)
 
     @cache

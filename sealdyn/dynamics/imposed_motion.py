@@ -27,9 +27,10 @@ from ..numerics.piecewise_linear import initially, points
 from ..scene.contact import contact_thresholds, finish
 from ..scene.film import aligned_gaps, coning_change
 from ..scene.gas import viscosity_of
+from ..scene.loads import load_of
 from ..scene.rings import ROTOR, STATOR
 from .intervals import Interval, constant_and_slope, modulo_turn, spins
-from .swept_motion import AXIAL_SHARE, SWEEP_ROW, motion_at, motions, piece_at, sweep_at
+from .swept_motion import AXIAL_SHARE, SWEEP_ROW, loads, motion_at, motions, piece_at, sweep_at
 
 # Steps of differences about a state at rest, in the thinnest film: four of them reach to either side; the least, as a
 # share of them.
@@ -122,21 +123,25 @@ ROTOR_SPEED, STATOR_SPEED, VISCOSITY_AT, INNER_AT, OUTER_AT, TEMPERATURE_AT, CLO
 # rings at the segment's start.
 CONING_AT, CONING_PER_SPEED_SQUARED = 14, 16
 ROTOR_ANGLE_AT, STATOR_ANGLE_AT, OSCILLATOR_COUNT = 17, 18, 19
-# Where the sweeps of the housing stand (swept_motion.py), and the sampled motion of stator's and rotor's carrier
-# (swept_motion.py), 0 if there is none.
-SWEEPS_AT, MOTION_AT, OSCILLATORS = 20, 21, 23
+# Where the sweeps of the housing stand (swept_motion.py), the sampled motion of stator's and rotor's carrier, and the
+# sampled forces on both (swept_motion.py), 0 if there is none.
+SWEEPS_AT, MOTION_AT, LOADS_AT, OSCILLATORS = 20, 21, 23, 25
 ROW = 9
 
 # Kinds: axial motion of the carrier; tilt of the carrier turning with the phase; tilt of the carrier about
 # a fixed axis; the ring's own misalignment in its carrier, which its springs feel; a moment (N m) on the ring, and that
-# of a mass off the axis, whose amplitude is mass, eccentricity and arm multiplied (kg m^2).
-AXIAL, TURNING, FIXED_AXIS, OWN, MOMENT, UNBALANCE = range(6)
+# of a mass off the axis, whose amplitude is mass, eccentricity and arm multiplied (kg m^2); a moment about a fixed axis
+# and an axial force (N) on the ring.
+AXIAL, TURNING, FIXED_AXIS, OWN, MOMENT, UNBALANCE, FIXED_MOMENT, PULL = range(8)
+# Those that act on the ring itself.
+ON_RING = (MOMENT, UNBALANCE, FIXED_MOMENT, PULL)
 
-# Slots of the imposed state, per ring: carrier displacement and rate, own misalignment, carrier acceleration, moments.
+# Slots of the imposed state, per ring: carrier displacement and rate, own misalignment, carrier acceleration, force and
+# moments.
 Z, TILT_X, TILT_Y, Z_RATE, TILT_X_RATE, TILT_Y_RATE, OWN_X, OWN_Y, OWN_X_RATE, OWN_Y_RATE = range(10)
 Z_ACCELERATION, TILT_X_ACCELERATION, TILT_Y_ACCELERATION = range(10, 13)
-LOAD_X, LOAD_Y = 13, 14
-PER_RING = 15
+LOAD_Z, LOAD_X, LOAD_Y = 13, 14, 15
+PER_RING = 16
 
 
 def harmonics_of_segment(shaft, housing, rotor, stator, interval: Interval) -> np.ndarray:
@@ -177,6 +182,14 @@ def harmonics_of_segment(shaft, housing, rotor, stator, interval: Interval) -> n
             add(k, MOMENT, arm * housing.gravity, housing.gravity_direction + 0.5 * math.pi)
             if any(points(speed)):
                 add(k, UNBALANCE, arm * centre.eccentricity, centre.phase, order=1.0)
+        if load := load_of(ring):
+            order = float(load.turns)
+            add(k, PULL, load.force, 0.0)
+            add(k, MOMENT, load.moment_x, 0.0, order=order)
+            add(k, MOMENT, load.moment_y, 0.5 * math.pi, order=order)
+            for tone in load.tone:
+                add(k, PULL, tone.force, tone.phase, frequency=tone.frequency)
+                add(k, FIXED_MOMENT, tone.moment, tone.phase, frequency=tone.frequency, direction=tone.direction)
     for whirl in shaft.whirl:
         add(ROTOR, TURNING, whirl.angle, whirl.phase, order=whirl.ratio)
     for runout in rotor.axial_runout:
@@ -192,12 +205,13 @@ def harmonics_of_segment(shaft, housing, rotor, stator, interval: Interval) -> n
 
 
 def imposed_block(head, rows, sweeps, scene, interval: Interval) -> np.ndarray:
-    """The block over an interval: `head` the slots before SWEEPS_AT, the harmonics `rows`, the scene's sampled motion,
-    and the rows of its `sweeps`."""
-    places, blocks, at = [0.0, 0.0], [], OSCILLATORS + rows.size
-    for ring, sampled in motions(scene).items():
+    """The block over an interval: `head` the slots before SWEEPS_AT, the harmonics `rows`, the scene's sampled motion
+    and forces, and the rows of its `sweeps`."""
+    places, blocks, at = [0.0, 0.0, 0.0, 0.0], [], OSCILLATORS + rows.size
+    by_place = {**motions(scene), **{2 + ring: sampled for ring, sampled in loads(scene).items()}}
+    for place, sampled in by_place.items():
         blocks.append(sampled.block(interval.time, interval.length))
-        places[ring], at = at, at + len(blocks[-1])
+        places[place], at = at, at + len(blocks[-1])
     if len(sweeps):
         blocks.append([len(sweeps), *sweeps.ravel()])
     return np.concatenate([head, [at if len(sweeps) else 0.0, *places], rows.ravel(), *blocks])
@@ -226,6 +240,11 @@ def imposed_state(tau, p, c):
                 c[base + Z + part] += x
                 c[base + Z_RATE + part] += x_rate
                 c[base + Z_ACCELERATION + part] += x_acceleration
+        at = int(p[LOADS_AT + ring])
+        if at > 0:
+            piece = piece_at(tau, p, at)
+            for part in range(3):
+                c[PER_RING * ring + LOAD_Z + part] += motion_at(tau, p, at, piece, part)[0]
     at = int(p[SWEEPS_AT])
     for k in range(int(p[at]) if at > 0 else 0):
         row = at + 1 + SWEEP_ROW * k
@@ -251,12 +270,15 @@ def imposed_state(tau, p, c):
             c[base + Z_RATE] += x_rate
             c[base + Z_ACCELERATION] += x_acceleration
             continue
-        if kind == FIXED_AXIS:
+        if kind == PULL:
+            c[base + LOAD_Z] += x
+            continue
+        if kind in (FIXED_AXIS, FIXED_MOMENT):
             y, y_rate, y_acceleration = x * p[row + 5], x_rate * p[row + 5], x_acceleration * p[row + 5]
             x, x_rate, x_acceleration = x * p[row + 4], x_rate * p[row + 4], x_acceleration * p[row + 4]
         else:
             y, y_rate, y_acceleration = a * sin, a_rate * sin + a * w * cos, along * sin + across * cos
-        if kind == MOMENT:
+        if kind in (MOMENT, FIXED_MOMENT):
             c[base + LOAD_X] += x
             c[base + LOAD_Y] += y
         elif kind == UNBALANCE:

@@ -11,7 +11,7 @@ from ..scene.patterns import grooves_of, waves_of
 from ..scene.rings import ROTOR, STATOR, stuck_support
 from ..scene.scene import SceneError
 from .equilibrium import axial_shift
-from .imposed_motion import AXIAL, FIXED_AXIS, MOMENT, OWN, ROW, TURNING, UNBALANCE, rest_state
+from .imposed_motion import AXIAL, FIXED_AXIS, FIXED_MOMENT, ON_RING, OWN, PULL, ROW, TURNING, UNBALANCE, rest_state
 from .intervals import constant_and_slope, modulo_turn
 from .modes import MOTIONS, QUARTER_TURN, FilmDoubt, Harmonic, LinearScene, RingNumbers
 from .stability_thresholds import Whirl, all_at_once, one_by_one
@@ -30,7 +30,8 @@ def linear_scene(model, interval, speed: float | None = None, shift: float | Non
     another speed it needs no other linearisation.
     **Valid** no floor of the pressure that small motion meets, no waves, which have a wedge of their own, and neither
     inertia of the fluid, grooves nor coning that follows the speed, which move the gap with it: such a film is
-    linearised at every speed.  Raises SceneError at a speed at which no aligned film holds the closing force.
+    linearised at every speed, as is one whose numbers are given at each.  Raises SceneError at a speed at which no
+    aligned film holds the closing force.
     """
     w_r = constant_and_slope(model.scene.shaft.speed, interval)[0] if speed is None else speed
     w_s = constant_and_slope(model.scene.stator.speed, interval)[0]
@@ -131,7 +132,8 @@ def tilted_rest(model, interval, rings, spin: float, shift: float):
 def linear_in_speed(model, interval=None) -> bool:
     """Whether the matrices at any shaft speed, the rest as at an interval's start, follow from one linearisation of the
     film."""
-    plain = model.interface.floor_is_clear(interval) and model.interface.unknowns is None
+    interface = model.interface
+    plain = interface.floor_is_clear(interval) and interface.unknowns is None and not interface.film.as_given
     return plain and not moves_with_speed(model.given) and not waves_of(model.scene)
 
 
@@ -185,10 +187,9 @@ def _whirl(linear) -> Whirl | None:
 
 
 def check_harmonic(segment) -> None:
-    """Raises SceneError where samples or a sweep move a carrier."""
-    for ring in segment.sampled:
-        key = "housing.motion" if ring == STATOR else "shaft.motion"
-        raise SceneError(key, "motion by samples, which has no harmonics", "tones, or a run in time")
+    """Raises SceneError where samples move a carrier or pull at a ring, or a sweep does."""
+    for key in segment.records:
+        raise SceneError(key, "samples, which have no harmonics", "tones, or a run in time")
     if not segment.harmonic:
         key, _ = sweeps_of(segment.model.scene)[0]
         raise SceneError(key, "a sweep, which has no harmonics", "tones, or a run in time")
@@ -201,9 +202,12 @@ def harmonics(segment) -> list[Harmonic]:
     for ring, kind, amplitude, _, cos, sin, a0, a1, _ in segment.rows.reshape(-1, ROW):
         phasor = amplitude * np.exp(1j * a0)
         shape = np.zeros(3, dtype=complex)
-        if kind == AXIAL:
+        if kind == PULL and amplitude and not a1 and not segment.model.interface.film.constant:
+            # What stands moves the gap about which the film is linearised (equilibrium.py).
+            continue
+        if kind in (AXIAL, PULL):
             shape[0] = phasor
-        elif kind != FIXED_AXIS:
+        elif kind not in (FIXED_AXIS, FIXED_MOMENT):
             shape[1], shape[2] = phasor, -1j * phasor
         else:
             shape[1], shape[2] = phasor * cos, phasor * sin
@@ -211,7 +215,7 @@ def harmonics(segment) -> list[Harmonic]:
         if kind == UNBALANCE:
             shape *= 1j * a1**2
         moves, own = kind in (AXIAL, TURNING, FIXED_AXIS), kind == OWN
-        moment = shape if kind in (MOMENT, UNBALANCE) else None
+        moment = shape if kind in ON_RING else None
         found.append(Harmonic(a1, int(ring), shape if moves else none, shape if own else none, moment))
     return found
 

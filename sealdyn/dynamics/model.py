@@ -7,6 +7,7 @@ import numpy as np
 from ..faces.geometry import FACE_SIZE
 from ..numerics.piecewise_linear import initially
 from ..scene.film import aligned_gaps, coning_change
+from ..scene.loads import load_of
 from ..scene.rings import RING_NAMES
 from ..scene.scene import Scene, SceneError
 from . import equations, linearisation, modes
@@ -93,6 +94,7 @@ class Model:
         return [
             scene.shaft.speed, scene.stator.speed, *fluid_conditions(film).values(), film.coning, film.temperature,
             self.closing.spring, scene.rotor.runout, scene.rotor.misalignment, scene.stator.misalignment,
+            *(q for ring in (scene.stator, scene.rotor) if (load := load_of(ring)) for q in load.varying()),
         ]  # fmt: skip
 
     def _set_bands(self):

@@ -79,8 +79,8 @@ def diagonal(axial: float, tilt: float) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Harmonic:
-    """One imposed harmonic, Re(amplitude exp(i frequency t)): carrier and own misalignment of one ring, and the moment
-    on it (None: none), complex arrays (3,) in the order (z, tilt_x, tilt_y)."""
+    """One imposed harmonic, Re(amplitude exp(i frequency t)): carrier and own misalignment of one ring, force and
+    moments on it (None: none), complex arrays (3,) in the order (z, tilt_x, tilt_y)."""
 
     frequency: float
     ring: int

@@ -13,13 +13,14 @@ from ..scene.contact import film_in_words, limit_in_words
 from ..scene.scene import SceneError
 from ..scene.sweep import end
 from .contact_events import ContactEvents
+from .equilibrium import pulled_apart
 from .extrema import ExtremaTracker
 from .imposed_motion import harmonics_of_segment
 from .intervals import constant_and_slope
 from .model import Model
 from .segments import Segment
 from .stick_slip import StickSlip
-from .swept_motion import fastest_sweep, motions, sweeps_of, sweeps_of_segment
+from .swept_motion import fastest_sweep, splines, sweeps_of, sweeps_of_segment
 
 
 class Concern(StrEnum):
@@ -75,6 +76,8 @@ class RunState:
             self.stick_slip = Reversals(model)
         remark = model.interface.film.remark
         self.reasons = [*model.unknowns.reasons, *([remark] if remark else []), *model.scene.housing.remarks(duration)]
+        for key, motion in (("housing.motion", model.scene.housing.motion), ("shaft.motion", model.scene.shaft.motion)):
+            self.reasons += motion.remarks(key) if motion else []
         self.cautions = []
         self.last, self.start = (0, 0.0, self.y0), None
         self._segment = None
@@ -136,7 +139,7 @@ class RunState:
             passing = [waves * abs(shaft - stator), abs(shaft) * bool(len(rows))]
             fastest = max(fastest, float(np.max(passing)))
             fastest = max(fastest, fastest_sweep(sweeps_of_segment(scene, interval), interval.length))
-        return max([fastest, *(sampled.rate for sampled in motions(scene).values())])
+        return max([fastest, *(sampled.rate for sampled in splines(scene).values())])
 
     # --- the start ----------------------------------------------------------------------------------
 
@@ -146,6 +149,7 @@ class RunState:
         at, _, _ = self.segment(0).periodic_motion
         q, rate = at(0.0)
         places = self.model.unknowns.among_three()
+        q[::3] += pulled_apart(self.model, self.model.start)
         return self.model.vector(q[places], rate[places])
 
     def start_film(self, y=None) -> float:

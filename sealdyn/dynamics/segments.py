@@ -25,7 +25,7 @@ from .imposed_motion import (
 from .intervals import Interval, common_period, constant_and_slope, modulo_turn
 from .native import native, rates_along
 from .step_bounds import BEND, REACH, largest_swing
-from .swept_motion import fastest_sweep, largest_sweep, motions, sweeps_of, sweeps_of_segment
+from .swept_motion import fastest_sweep, largest_sweep, motions, splines, sweeps_of, sweeps_of_segment
 
 # Steps per shortest period while a ring sticks: its load is looked at twice in each.
 PER_PERIOD = 32
@@ -45,8 +45,8 @@ class Segment:
 
     `n` displacements come first in the unknowns `y` (size,), then the rates of those with mass (`n_mechanical` in
     all), then the film's (slice `film`), then the works.  `p` parameters, `rows` (m, ROW) imposed harmonics, `sweeps`
-    (k, SWEEP_ROW) of the housing, `sampled` {ring: what moves its carrier by samples}, `imposed_pace` (rad/s) the
-    fastest of them, `pace` that of the scan;
+    (k, SWEEP_ROW) of the housing, `sampled` {ring: what moves its carrier by samples}, `records`
+    {key: all by samples, forces among them}, `imposed_pace` (rad/s) the fastest of them, `pace` that of the scan;
     `index` among the segments of a run, `last` of them; `stuck` {ring: True, False, or the velocity of its onset (3,)
     in m/s and rad/s}, of a ring whose seal gives where its elements rest.
     """
@@ -63,10 +63,10 @@ class Segment:
         self.may_change = bool(unknowns.coulomb_rings or unknowns.elastic_rings)
         self.sweeps = sweeps_of_segment(model.scene, interval)
         self.p, self.rows = self._parameters()
-        self.sampled = motions(model.scene)
+        self.sampled, self.records = motions(model.scene), splines(model.scene)
         paces = [max(abs(r[7]), abs(r[7] + 2 * r[8] * self.length)) for r in self.rows]
         paces.append(fastest_sweep(self.sweeps, self.length))
-        self.imposed_pace = max([*paces, *(motion.pace for motion in self.sampled.values())], default=0.0)
+        self.imposed_pace = max([*paces, *(motion.pace for motion in self.records.values())], default=0.0)
         self.pace = self._pace()
         self.w, self.s = np.zeros(equations.SCRATCH), np.zeros(GAP_STATE_SIZE)
         self._bind()
@@ -310,7 +310,7 @@ class Segment:
         """Whether what is imposed is harmonics alone, so that it may have a period and a steady response; in the
         segment that stands for the scene at any time, none of its sweeps may come later."""
         later = self.interval is self.model.start and sweeps_of(self.model.scene)
-        return not (self.sampled or len(self.sweeps) or later)
+        return not (self.records or len(self.sweeps) or later)
 
     def period(self) -> float | None:
         """Common period (s) of the forcing; one shaft turn if nothing moves but the shaft, 0.0 if nothing moves at all

@@ -21,6 +21,8 @@ import numpy as np
 
 from ..numerics.kernel import inner_kernel
 from ..scene.excitation import Motion
+from ..scene.loads import LoadSamples, samples_of_loads
+from ..scene.rings import RING_NAMES
 from ..scene.scene import SceneError
 from ..scene.sweep import CORNER, end, level, ramps, span, tilts
 from .intervals import TURN, Interval
@@ -85,8 +87,8 @@ BERNSTEIN = np.array([[math.comb(i, j) / math.comb(5, j) for j in range(TERMS)] 
 
 
 @lru_cache(maxsize=8)
-def sampled(motion: Motion) -> Sampled:
-    """The spline through the samples of a motion."""
+def sampled(motion: Motion | LoadSamples) -> Sampled:
+    """The spline through the samples of a motion, or of forces (N, N m in place of m, rad)."""
     # Loaded only where samples are imposed.
     from scipy.interpolate import PPoly, make_interp_spline
 
@@ -109,12 +111,29 @@ def motions(scene) -> dict[int, Sampled]:
     return {ring: sampled(motion) for ring, motion in given.items() if motion is not None}
 
 
+def loads(scene) -> dict[int, Sampled]:
+    """The splines of the forces on the rings of a scene, 0 stator, 1 rotor."""
+    return {ring: sampled(samples) for ring, samples in samples_of_loads(scene).items()}
+
+
+def records(scene) -> dict[str, Motion | LoadSamples]:
+    """All samples of a scene that act, by their dotted keys."""
+    forces = {f"{RING_NAMES[ring]}.load.samples": samples for ring, samples in samples_of_loads(scene).items()}
+    moved = {"housing.motion": scene.housing.motion, "shaft.motion": scene.shaft.motion}
+    return {key: motion for key, motion in moved.items() if motion is not None} | forces
+
+
+def splines(scene) -> dict[str, Sampled]:
+    """Their splines."""
+    return {key: sampled(record) for key, record in records(scene).items()}
+
+
 def check_covers(scene, duration: float) -> None:
-    """Raises SceneError where the samples of a motion end before a run of `duration` (s) does."""
-    for table, motion in (("housing", scene.housing.motion), ("shaft", scene.shaft.motion)):
-        if motion is not None and motion.time[-1] < duration * (1 - 1e-9):
-            found = f"samples until {motion.time[-1]:g} s, a run of {duration:g} s"
-            raise SceneError(f"{table}.motion.time", found, "samples to the end of the run, or a shorter run")
+    """Raises SceneError where samples end before a run of `duration` (s) does."""
+    for key, record in records(scene).items():
+        if record.time[-1] < duration * (1 - 1e-9):
+            found = f"samples until {record.time[-1]:g} s, a run of {duration:g} s"
+            raise SceneError(f"{key}.time", found, "samples to the end of the run, or a shorter run")
 
 
 def _coarse(time, columns) -> float:

@@ -6,15 +6,16 @@ import numpy as np
 
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene.film import follows_speed
+from ..scene.loads import load_of, pulls
 from ..scene.patterns import alike_sectors, face_orders, faces_tilt, waves_of
 from ..scene.rings import RING_NAMES, ROTOR, STATOR
 from ..scene.sweep import largest_amplitude, tilts
 from ..scene.variants import turning_supports
 from . import equations
-from .imposed_motion import AXIAL, MOMENT, UNBALANCE, fluid_conditions, harmonics_of_segment
+from .imposed_motion import AXIAL, ON_RING, PULL, UNBALANCE, fluid_conditions, harmonics_of_segment
 from .intervals import largest_value
 from .native import SEAL_TYPE, Value
-from .swept_motion import motions
+from .swept_motion import records, splines
 
 # Works and the sum of their absolute values; with contact or a secondary seal two more works and an impulse.
 WORKS, MORE = 6, 3
@@ -57,13 +58,14 @@ class Unknowns:
         # A cone that opens moves the equilibrium.
         cones = (film.coning, scene.shaft.speed) if follows_speed(film) else (film.coning,)
         loads = (film.inner_pressure, film.outer_pressure, film.temperature, closing.spring, *cones)
+        outside = [q for ring in rings.values() if (load := load_of(ring)) for q in load.varying()]
         loaded = any(isinstance(q, PiecewiseLinear) for q in loads)
         others = (scene.shaft.speed, scene.stator.speed, *fluid_conditions(film).values(), scene.rotor.runout)
         tilts = (scene.rotor.misalignment, scene.stator.misalignment)
         self.loaded = loaded
-        self.constant = not any(isinstance(q, PiecewiseLinear) for q in (*loads, *others, *tilts))
+        self.constant = not any(isinstance(q, PiecewiseLinear) for q in (*loads, *others, *tilts, *outside))
         # Samples have no frequency and sweeps have many: nothing that needs one, a steady response, a period, is there.
-        self.constant = self.constant and not (scene.shaft.motion or scene.housing.motion or scene.housing.sweeps)
+        self.constant = self.constant and not (records(scene) or scene.housing.sweeps)
         # Of films that take waves and pads, those without unknowns press as between plain faces.
         pressed = film_unknowns is not None
         self.faces_tilt = pressed and faces_tilt(scene)
@@ -197,7 +199,7 @@ class Unknowns:
         slowest = float(np.min(sizes[sizes > ROUNDING * np.max(sizes, initial=0.0)], initial=np.inf))
         forced = [2 * math.pi * v.frequency for v in scene.housing.tones]
         forced += [2 * math.pi * max(sweep.frequency) for sweep in scene.housing.sweeps]
-        forced += [sampled.rate for sampled in motions(scene).values()]
+        forced += [sampled.rate for sampled in splines(scene).values()]
         alone = natural or (slowest if slowest < np.inf else 1.0)
         rate = largest_value(scene.shaft.speed) or max(forced, default=alone)
         scales = np.full(self.size, self._energy(model, length, tilt))
@@ -222,12 +224,14 @@ class Unknowns:
         scene, amplitude = self.scene, 0.1 if self.loaded else 1e-3
         for row in harmonics_of_segment(scene.shaft, scene.housing, scene.rotor, scene.stator, model.start):
             size = length if row[1] == AXIAL else tilt
-            if row[1] in (MOMENT, UNBALANCE):
-                size = max(angular * tilt, 1e-300) / (row[7] ** 2 if row[1] == UNBALANCE else 1.0)
+            if row[1] in ON_RING:
+                held = axial * length if row[1] == PULL else angular * tilt
+                size = max(held, 1e-300) / (row[7] ** 2 if row[1] == UNBALANCE else 1.0)
             amplitude = max(amplitude, abs(row[2]) / size)
-        for motion in filter(None, (scene.housing.motion, scene.shaft.motion)):
-            for column, scale in zip(motion.columns(), (length, tilt, tilt), strict=True):
-                amplitude = max(amplitude, max(map(abs, column)) / scale)
+        for key, record in records(scene).items():
+            scales = (axial * length, *2 * [angular * tilt]) if ".load." in key else (length, tilt, tilt)
+            for column, scale in zip(record.columns(), scales, strict=True):
+                amplitude = max(amplitude, max(map(abs, column)) / max(scale, 1e-300))
         for sweep in scene.housing.sweeps:
             amplitude = max(amplitude, largest_amplitude(sweep) / (tilt if tilts(sweep) else length))
         for start in (scene.initial.stator, scene.initial.rotor):
@@ -240,9 +244,9 @@ class Unknowns:
 def _axial_motion_is_imposed(scene) -> bool:
     """Whether anything but its own start ever moves a ring axially."""
     runouts = any(runout.amplitude for runout in scene.rotor.axial_runout)
-    sampled = any(any(m.axial or ()) for m in (scene.housing.motion, scene.shaft.motion) if m)
+    sampled = any(m.moves("axial") for m in (scene.housing.motion, scene.shaft.motion) if m)
     shaken = any(_moves(shaken) for shaken in (*scene.housing.axial_tones, *scene.housing.axial_sweep))
-    return runouts or sampled or shaken
+    return runouts or sampled or shaken or any(pulls(load_of(ring)) for ring in (scene.stator, scene.rotor))
 
 
 def _moves(shaken) -> bool:

@@ -128,6 +128,8 @@ class Film:
                        they are differences of the force.
     `constant`         whether its stiffness and damping are given numbers, whatever the gap: no law of a film, so that
                        no other film is asked what it leaves out, and motion on it is linear.
+    `as_given`         whether its stiffness and damping at a speed are given numbers: not those at rest and the wedge
+                       of the mean spin.
     `opening_slots`    slots of `f` that hold the opening force per inner and per outer pressure (m^2), of a film whose
                        coefficients may be another film's (`film.coefficients = "radial"`).
     `pads`             whether it takes the pads of a table.
@@ -206,6 +208,7 @@ class Film:
     patterned: str | None = None
     matrices: Callable | None = None
     constant: bool = False
+    as_given: bool = False
     opening_slots: tuple[int, int] | None = None
     pads: bool = False
     standing_waves: bool = False

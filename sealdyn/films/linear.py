@@ -7,24 +7,17 @@ the user's own.  The term with the mean spin wm is the wedge (half-speed entrain
 destabilising one.  Green's stiffness follows the pressure drop and his damping the viscosity, so both
 follow tables over time; the user's own numbers stay as given.
 **Valid** small motion: |g| r_o and dz well below the clearance; then it costs nothing.
-Leakage and drag are those of the narrow seal at the tilted and wavy film, angle by angle, without squeeze and without
-what the pressure does on the slope of a wave; the leakage of a gas is isothermal and viscous.
+Leakage and drag are those of the narrow seal at the tilted and wavy film (_narrow_seal.py).
 """
-
-import math
 
 import numpy as np
 
 from ..closed_form import film_coefficients, narrow_seal_opening_force
-from ..faces.film_thickness import film_thickness
 from ..faces.geometry import (
     CAVITATED,
-    CLEARANCE,
-    CONING,
     DZ,
     DZ_RATE,
     FACE_SIZE,
-    FLOOR,
     FLOW_INNER,
     FLOW_OUTER,
     FORCE,
@@ -33,28 +26,19 @@ from ..faces.geometry import (
     GY,
     GY_RATE,
     INNER_PRESSURE,
-    INNER_RADIUS,
     MEAN_SPIN,
     MOMENT_X,
     MOMENT_Y,
-    ORDER_LIST,
-    ORDERS,
     OUTER_PRESSURE,
-    OUTER_RADIUS,
-    SPIN_DIFFERENCE,
-    TEMPERATURE,
-    TILT_AT_MEAN,
     TORQUE,
     VISCOSITY,
-    WAVES,
     face_parameters,
-    regularised_thickness,
 )
 from ..numerics.kernel import value_kernel
 from ..numerics.piecewise_linear import initially
 from ..scene.film import Coefficients, coning_varies
-from ..scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE
 from ._contract import Film
+from ._narrow_seal import narrow_seal, normal_conditions
 
 
 def accepts(film, waves=()) -> str:
@@ -77,7 +61,6 @@ TILT_K, TILT_K_DP, TILT_D, TILT_D_MU, AXIAL_K, AXIAL_K_DP, AXIAL_D, AXIAL_D_MU, 
     FACE_SIZE, FACE_SIZE + 11
 )
 BLOCK_SIZE = FACE_SIZE + 11
-FLOW_ANGLES = 64
 
 
 def parameters(film, clearance: float, error: float = 1e-8) -> np.ndarray:
@@ -102,7 +85,7 @@ def parameters(film, clearance: float, error: float = 1e-8) -> np.ndarray:
             c.axial_stiffness,
             c.axial_damping,
         )
-    f[GAS] = 0.0 if film.gas is None else NORMAL_TEMPERATURE / NORMAL_PRESSURE
+    f[GAS] = normal_conditions(film)
     f[FORCE_I] = narrow_seal_opening_force(**faces, inner_pressure=1.0, outer_pressure=0.0)
     f[FORCE_O] = narrow_seal_opening_force(**faces, inner_pressure=0.0, outer_pressure=1.0)
     return f
@@ -144,41 +127,10 @@ def wrench(f, s):
 
 @value_kernel()
 def flow(f, s):
-    """As `wrench`; also flow in +r (m^3/s) and friction torque on the rotor (N m) of the narrow seal at
-    this gap: `h^3` conductance and `mu r/h` drag integrated over the face width in closed form."""
+    """As `wrench`; also flow in +r (m^3/s) and friction torque on the rotor (N m) of the narrow seal at this gap."""
     wrench(f, s)
-    r_i, r_o, floor = f[INNER_RADIUS], f[OUTER_RADIUS], f[FLOOR]
-    width, r_m = r_o - r_i, 0.5 * (r_i + r_o)
-    tilt = math.hypot(s[GX], s[GY])
-    swing_i, swing_o = r_i * tilt, r_o * tilt
-    if f[TILT_AT_MEAN] != 0.0:
-        swing_i = swing_o = r_m * tilt
-    conductance = drag = 0.0
-    angles = FLOW_ANGLES
-    if f[WAVES] != 0.0:
-        angles *= int(f[ORDER_LIST + int(f[ORDERS]) - 1])
-    for j in range(angles):
-        angle = 2.0 * math.pi * j / angles
-        if f[WAVES] == 0.0:
-            # Counted from the thinnest place.
-            cos_b = math.cos(angle)
-            h_i = regularised_thickness(f[CLEARANCE] + s[DZ] - swing_i * cos_b, floor)
-            h_o = regularised_thickness(f[CLEARANCE] + s[DZ] + f[CONING] * width - swing_o * cos_b, floor)
-        else:
-            h_i = regularised_thickness(film_thickness(f, s, r_i, angle), floor)
-            h_o = regularised_thickness(film_thickness(f, s, r_o, angle), floor)
-        conductance += 2.0 * (h_i * h_o) ** 2 / (width * (h_i + h_o))
-        change = (h_o - h_i) / h_i
-        drag += width / h_i * (math.log1p(change) / change if abs(change) > 1e-9 else 1.0)
-    d_theta = 2.0 * math.pi / angles
-    drop = s[OUTER_PRESSURE] - s[INNER_PRESSURE]
-    volume = -r_m * drop * d_theta * conductance / (12.0 * s[VISCOSITY])
-    if f[GAS] != 0.0:
-        # Isothermal, at the mean pressure: p^2 falls as the pressure of a liquid.
-        volume *= 0.5 * (s[INNER_PRESSURE] + s[OUTER_PRESSURE]) * f[GAS] / s[TEMPERATURE]
+    volume, s[TORQUE] = narrow_seal(f, s, f[GAS])
     s[FLOW_INNER] = s[FLOW_OUTER] = volume
-    twist = 0.5 * (s[GX] * s[MOMENT_Y] - s[GY] * s[MOMENT_X])
-    s[TORQUE] = s[VISCOSITY] * s[SPIN_DIFFERENCE] * r_m**3 * d_theta * drag + twist
 
 
 FILM = Film(

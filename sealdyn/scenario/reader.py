@@ -2,6 +2,8 @@
 end here, in one line each."""
 
 import dataclasses
+import functools
+import operator
 import os
 import stat
 import tomllib
@@ -26,7 +28,7 @@ from .errors import (
     refuse_unbounded,
     refuse_unreadable,
 )
-from .motion_files import refuse_files_elsewhere, whole_file
+from .motion_files import PLACES, refuse_files_elsewhere, whole_file
 from .overrides import (
     as_written,
     key_and_words,
@@ -111,9 +113,10 @@ class Scenario:
         raw = _toml(self.text, self.name)
         for override in self.overrides:
             override_key(raw, override, self.name)
-        for table, motion in self.motions().items():
+        for key, samples in self.motions().items():
             # Whole without the file, which is looked for from somewhere else then.
-            raw[table]["motion"] = motion
+            *path, last = key.split(".")
+            functools.reduce(operator.getitem, path, raw)[last] = samples
         return raw
 
     def to_toml(self) -> str:
@@ -122,13 +125,18 @@ class Scenario:
         return text_of(self.to_dict(), self.name, self.question) if anew else self.text
 
     def motions(self) -> dict[str, dict[str, Any]]:
-        """Motions by samples, of "shaft" and "housing": their columns (SI), and the name of their file if they came
-        from one."""
+        """Motions and loads by samples, of "shaft.motion" and the other PLACES: their columns (SI), and the name of
+        their file if they came from one."""
         if isinstance(self.scene, RadialScene):
             return {}
-        tables = {"shaft": self.scene.shaft, "housing": self.scene.housing}
-        given = {name: _plain(dataclasses.asdict(table.motion)) for name, table in tables.items() if table.motion}
-        return {name: {k: v for k, v in motion.items() if v is not None} for name, motion in given.items()}
+        given = {}
+        for key in PLACES:
+            table = self.scene
+            for step in key.split("."):
+                table = getattr(table, step, None)
+            if table is not None:
+                given[key] = {k: v for k, v in _plain(dataclasses.asdict(table)).items() if v is not None}
+        return given
 
     def with_(self, values: Mapping[str, Any] | None = None, /, **more: Any) -> Self:
         """The scenario with other values at dotted keys: `with_({"film.clearance": "5 um"})`, or with two underscores

@@ -6,15 +6,17 @@ import math
 from ..numerics.piecewise_linear import PiecewiseLinear, initially, points
 from ..units import Temperature, Viscosity
 from .contact import contact_errors, contact_thresholds, film_in_words, limit_in_words
-from .excitation import motion_errors, random_errors
+from .excitation import ACCELERATIONS, MOTION_COLUMNS, acceleration_errors, random_errors, sample_errors
 from .film import aligned_gaps, coned, follows_speed, pads_errors, profile_errors, reynolds_errors
 from .gas import GASES, gas_of
 from .liquid import heat_errors, liquid_errors
+from .loads import LOAD_COLUMNS
 from .patterns import grooves_errors, grooves_of, waves_of, waviness_errors
 from .rings import RING_NAMES, body_errors, elastic_errors
 from .scene import SceneError
 from .secondary_seal import secondary_seal_errors
 from .sweep import sweep_errors
+from .tabulated import tabulated_errors
 
 # Of keys that may not step, if not rad.
 UNITS = {"temperature": "K", "speed": "rad/s", "outer_pressure": "Pa", "inner_pressure": "Pa"}
@@ -33,6 +35,7 @@ def scene_errors(scene, run) -> list[SceneError]:
     bad += _broken(_cavitation, scene.film) + _broken(_liquid if scene.film.gas is None else _gas, scene.film)
     bad += [SceneError(*error) for error in (*waviness_errors(scene), *elastic_errors(scene), *grooves_errors(scene))]
     bad += [SceneError(*error) for error in (heat_errors(scene) if scene.film.heat is not None else ())]
+    bad += [SceneError(*error) for error in (tabulated_errors(scene) if scene.film.model == "tabulated" else ())]
     bad += _broken(_closing, scene)
     for name, ring in (("stator", scene.stator), ("rotor", scene.rotor)):
         bad += _broken(_ring, name, ring) + _broken(check_no_step, name, ring)
@@ -47,8 +50,14 @@ def scene_errors(scene, run) -> list[SceneError]:
         expected = "[rotor.support] or [stator.support]: the ring that floats"
         bad.append(SceneError("rotor.support", "no support on either ring", expected))
     for name, table in (("housing", scene.housing), ("shaft", scene.shaft)):
-        for key, *words in motion_errors(table.motion) if table.motion else ():
+        given = (*MOTION_COLUMNS, *ACCELERATIONS)
+        wrong = (sample_errors(table.motion, given) or acceleration_errors(table.motion)) if table.motion else ()
+        for key, *words in wrong:
             bad.append(SceneError(f"{name}.motion.{key}", *words))
+    for name, ring in (("stator", scene.stator), ("rotor", scene.rotor)):
+        samples = ring.load.samples if ring.load else None
+        for key, *words in sample_errors(samples, LOAD_COLUMNS) if samples else ():
+            bad.append(SceneError(f"{name}.load.samples.{key}", *words))
     bad += _broken(_vibrations, scene.housing) + _broken(_run, scene.shaft, run)
     if not bad and (run.start == "rest" or (run.start == "auto" and scene.initial.given)):
         bad += _broken(_open_at_start, scene)
@@ -369,7 +378,7 @@ def turns_of(speed) -> float:
     return angle / (2 * math.pi)
 
 
-RIGID_LEAVES = ("mass", "transverse_inertia", "polar_inertia", "body", "mass_centre", "unphysical_inertia")
+RIGID_LEAVES = ("mass", "transverse_inertia", "polar_inertia", "body", "mass_centre", "unphysical_inertia", "load")
 
 
 def unused(scene, given: set[str]) -> list[str]:
@@ -398,6 +407,8 @@ def unused(scene, given: set[str]) -> list[str]:
     if scene.film.gas is not None:
         leaves += [f"film.{key}" for key in ("density", "specific_heat", "vapour_pressure", "coefficients")]
         leaves += [f"film.{name}." for name in ("gas_dam", "gas_reynolds") if scene.film.model not in (name, "auto")]
+    if scene.film.model != "tabulated":
+        leaves.append("film.tabulated.")
     if scene.film.model != "linear":
         leaves.append("film.coefficients")
     elif scene.film.coefficients != "radial":

@@ -36,8 +36,11 @@ from . import Strict
 from .sweep import AngularSweep, AxialSweep, Sweep, remark
 
 MOTION_COLUMNS = ("axial", "tilt_x", "tilt_y")
+ACCELERATIONS = tuple(f"{name}_acceleration" for name in MOTION_COLUMNS)
 # A spline of fifth degree has as many coefficients.
 FEWEST_SAMPLES = 6
+# Of the slowest motion that is no drift: its least periods in a record, and least samples of each.
+LONGEST_DRIFT, DRIFT_SAMPLES = 2.0, 16
 # Least share of the median distance of samples: a solver steps as if the motion were everywhere as fast as the nearest
 # two of them can show, and a spline through two values at almost one time overshoots.
 NEAREST_SAMPLES = 1e-3
@@ -50,6 +53,8 @@ class Motion(Strict):
 
     file: str | None = field(default=None, compare=False)
     """CSV or HDF5 with these columns, beside the scenario; columns that are given here are not read from it."""
+    titles: list[str] | None = field(default=None, compare=False)
+    """Names of the columns of a CSV file that has no line of them, "time (ms)" and the like, "" for one not read."""
     time: Listed[Sample] = ()
     """Of the samples, increasing, from 0 or before to the end of the run or beyond."""
     axial: Listed[Displacement] | None = None
@@ -58,22 +63,84 @@ class Motion(Strict):
     """Tilt about the x axis; none without it."""
     tilt_y: Listed[Tilt] | None = None
     """Tilt about the y axis; none without it."""
+    axial_acceleration: Listed[Acceleration] | None = None
+    """As measured, in place of `axial`: integrated twice, its drift removed (`drift_below`)."""
+    tilt_x_acceleration: Listed[AngularAcceleration] | None = None
+    """In place of `tilt_x`."""
+    tilt_y_acceleration: Listed[AngularAcceleration] | None = None
+    """In place of `tilt_y`."""
+    drift_below: Frequency | None = None
+    """Beside accelerations: what they have of offset, trend and motion slower than this is drift and goes.  A tone f
+    keeps 1 - (drift_below/f)^4 of its displacement or more; within 1/drift_below of either end of the record it is off
+    by up to half of drift_below/f."""
+
+    def moves(self, name: str) -> bool:
+        """Whether it has the motion of a name of MOTION_COLUMNS."""
+        return any(getattr(self, name) or ()) or any(getattr(self, f"{name}_acceleration") or ())
 
     def columns(self) -> list[tuple[float, ...]]:
         """Axial displacement (m) and tilts (rad) at the times, zeros where none are given."""
-        return [getattr(self, name) or (0.0,) * len(self.time) for name in MOTION_COLUMNS]
+        found = []
+        for name, acceleration in zip(MOTION_COLUMNS, ACCELERATIONS, strict=True):
+            given = getattr(self, name) or (0.0,) * len(self.time)
+            if self.drift_below and (measured := getattr(self, acceleration)):
+                given, _ = integrated(self.time, measured, self.drift_below)
+            found.append(given)
+        return found
+
+    def remarks(self, key: str) -> list[str]:
+        """A sentence for each acceleration of the motion at a dotted `key`: how it was integrated, and its drift."""
+        found = []
+        for name in ACCELERATIONS if self.drift_below else ():
+            if measured := getattr(self, name):
+                _, (offset, pace) = integrated(self.time, measured, self.drift_below)
+                unit = "m/s^2" if name.startswith("axial") else "rad/s^2"
+                found.append(
+                    f"{key}.{name} integrated twice, without what is slower than {self.drift_below:g} Hz and a drift "
+                    f"of {offset:.3g} {unit} {'+' if pace >= 0 else '-'} {abs(pace):.3g} {unit} per s"
+                )
+        return found
 
 
-def motion_errors(motion: Motion) -> list[tuple[str, str, str]]:
-    """(key, found, expected) of what samples cannot be."""
-    times = motion.time
+@lru_cache(maxsize=16)
+def integrated(time, values, corner: float) -> tuple[tuple[float, ...], tuple[float, float]]:
+    """The displacements of an acceleration, and its drift, as of numerics/twice_integrated.py."""
+    from ..numerics.twice_integrated import twice_integrated
+
+    moved, drift = twice_integrated(time, values, corner)
+    return tuple(moved.tolist()), drift
+
+
+def acceleration_errors(motion: Motion) -> list[tuple[str, str, str]]:
+    """(key, found, expected) of what accelerations of a motion cannot be."""
+    given, corner = [name for name in ACCELERATIONS if getattr(motion, name)], motion.drift_below
+    for name in given:
+        if getattr(motion, name.removesuffix("_acceleration")):
+            return [(name, "both displacement and acceleration", "one of them")]
+    if not given:
+        return (
+            [] if corner is None else [("drift_below", f"{corner:g} Hz", f"nothing, or {' or '.join(ACCELERATIONS)}")]
+        )
+    if corner is None:
+        return [("drift_below", "nothing", "a frequency, below which what accelerations have is drift")]
+    apart = max(after - before for before, after in pairwise(motion.time))
+    least, most = LONGEST_DRIFT / (motion.time[-1] - motion.time[0]), 1.0 / (DRIFT_SAMPLES * apart)
+    if not least <= corner <= most:
+        expected = f"{least:.3g} to {most:.3g} Hz: {LONGEST_DRIFT:g} periods in the record, of {DRIFT_SAMPLES} samples"
+        return [("drift_below", f"{corner:g} Hz", expected)]
+    return []
+
+
+def sample_errors(motion, names=MOTION_COLUMNS) -> list[tuple[str, str, str]]:
+    """(key, found, expected) of what samples of a Motion, or others with columns of these `names`, cannot be."""
+    times, columns = motion.time, f"{', '.join(names[:-1])} or {names[-1]}"
     if not times:
-        return [("time", "nothing", "a list of times and axial, tilt_x or tilt_y, or a file with such columns")]
+        return [("time", "nothing", f"a list of times and {columns}, or a file with such columns")]
     if len(times) < FEWEST_SAMPLES:
         return [("time", f"{len(times)} samples", f"at least {FEWEST_SAMPLES}")]
-    if not any(getattr(motion, name) for name in MOTION_COLUMNS):
-        return [("axial", "times without a motion", "axial, tilt_x or tilt_y")]
-    for name in MOTION_COLUMNS:
+    if not any(getattr(motion, name) for name in names):
+        return [(names[0], "times and nothing else", columns)]
+    for name in names:
         column = getattr(motion, name)
         if column is not None and len(column) != len(times):
             return [(name, f"{len(column)} values for {len(times)} times", "one for each time")]
@@ -85,8 +152,8 @@ def motion_errors(motion: Motion) -> list[tuple[str, str, str]]:
     if least < NEAREST_SAMPLES * usual:
         n = apart.index(least) + 1
         found = f"{least:g} s between samples {n} and {n + 1}, {usual:g} s between most"
-        return [("time", found, "no two of them as near as that: leave one out, or give the motion evenly")]
-    for name in MOTION_COLUMNS:
+        return [("time", found, "no two of them as near as that: leave one out, or give them evenly")]
+    for name in names:
         # A slip of units, or no number at all.
         if not all(map(math.isfinite, getattr(motion, name) or ())):
             return [(name, "a value that is no finite number", "finite numbers")]

@@ -43,6 +43,7 @@ from ..units import (
 from . import Strict
 from .gas import Gas, GasDam, GasName, GasReynolds
 from .liquid import Heat, Liquid, LiquidName
+from .tabulated import Tabulated
 
 PressureDifference = Annotated[float, Quantity("pressure difference", "Pa", '"10 bar"', (), 0,
     usual=Usual(1e3, 1e9, "bar"))]  # fmt: skip
@@ -321,6 +322,8 @@ class Film(Strict):
     """Options of model = "gas_reynolds"."""
     reynolds: Reynolds | None = None
     """Options of model = "reynolds"."""
+    tabulated: Tabulated | None = None
+    """Numbers of model = "tabulated"."""
 
 
 def profile_errors(film) -> list[tuple[str, str, str]]:

@@ -19,6 +19,7 @@ from ..numerics.piecewise_linear import points
 from ..units import Angle, Height, Length, Radius
 from . import Strict
 from .contact import contact_errors, contact_thresholds
+from .loads import load_of, turns_over
 
 # Most waves of both faces together: kernels keep room for them.
 MOST_WAVES = 16
@@ -308,7 +309,8 @@ def tilt_is_imposed(scene) -> bool:
     vibrations = (*scene.housing.angular_tones, *scene.housing.angular_sweep)
     shaken = any(vibration.displacement or vibration.acceleration for vibration in vibrations)
     sampled = (m for m in (scene.housing.motion, scene.shaft.motion) if m)
-    shaken = shaken or any(any(m.tilt_x or ()) or any(m.tilt_y or ()) for m in sampled)
+    shaken = shaken or any(m.moves("tilt_x") or m.moves("tilt_y") for m in sampled)
+    shaken = shaken or any(turns_over(load_of(ring)) for ring in (rotor, stator))
     return shaken or any(any(points(tilt)) for tilt in tilts)
 
 

@@ -30,6 +30,7 @@ from ..units import (
 )
 from . import Strict
 from .liquid import ThermalConductivity
+from .loads import Load
 from .patterns import Grooves, Waviness
 from .secondary_seal import SecondarySeal
 
@@ -344,6 +345,8 @@ class Stator(Strict):
     """Springs and dampers to the housing: the stator floats."""
     secondary_seal: SecondarySeal | None = None
     """Friction of the O-ring under a floating stator."""
+    load: Load | None = None
+    """Force and moments from outside on a floating stator."""
 
 
 @dataclass(frozen=True)
@@ -381,3 +384,5 @@ class Rotor(Strict):
     """Springs and dampers to the shaft: the rotor floats."""
     secondary_seal: SecondarySeal | None = None
     """Friction of the O-ring under a floating rotor."""
+    load: Load | None = None
+    """Force and moments from outside on a floating rotor."""

@@ -11,9 +11,11 @@ from dataclasses import fields, replace
 from typing import Any
 
 from ..numerics.piecewise_linear import PiecewiseLinear, points
-from .excitation import Housing, Shaft
+from .excitation import ACCELERATIONS, MOTION_COLUMNS, Housing, Shaft
+from .loads import LOAD_COLUMNS, standing
 from .rings import INERTIAL, RING_NAMES, Rotor, Stator, stuck_support, with_inertia
 from .scene import Closing, Initial, RingStart, Scene, SceneError
+from .tabulated import COLUMNS
 
 # A key that is given takes its alternatives in the same table away.
 ALTERNATIVES = {
@@ -24,11 +26,9 @@ ALTERNATIVES = {
     "samples_per_turn": ("samples",),
     "displacement": ("acceleration",),
     "acceleration": ("displacement",),
-    "file": ("time", "axial", "tilt_x", "tilt_y"),
+    "file": ("time", *MOTION_COLUMNS, *ACCELERATIONS, *LOAD_COLUMNS, *COLUMNS),
     "time": ("file",),
-    "axial": ("file",),
-    "tilt_x": ("file",),
-    "tilt_y": ("file",),
+    **dict.fromkeys((*MOTION_COLUMNS, *ACCELERATIONS, *LOAD_COLUMNS), ("file",)),
     "radius": ("tilt_stiffness", "tilt_damping", "diameter"),
     "diameter": ("tilt_stiffness", "tilt_damping", "radius"),
     "tilt_stiffness": ("radius", "diameter"),
@@ -46,7 +46,7 @@ LEFT_OUT = {
     "secondary-seal": ("stator.secondary_seal", "rotor.secondary_seal"),
 }
 CARRIED = ("mass", "transverse_inertia", "polar_inertia", "body", "mass_centre", "unphysical_inertia", "misalignment",
-           "support", "secondary_seal")  # fmt: skip
+           "support", "secondary_seal", "load")  # fmt: skip
 # What a face keeps, whichever side its ring is on.
 FACE = ("waviness", "grooves")
 
@@ -163,13 +163,14 @@ def frozen_at(scene: Scene, time: float) -> Scene:
 
 def unforced(scene: Scene, speed: float) -> Scene:
     """The scene aligned and free of forcing, at constant conditions (functions of time at zero) and one shaft speed
-    (rad/s), `tilting`."""
+    (rad/s), `tilting`; a constant axial force from outside stays, since the rest hangs on it."""
     scene = tilting(frozen_at_start(scene))
+    rotor, stator, aligned = scene.rotor, scene.stator, {"misalignment": 0.0, "mass_centre": None}
     return replace(
         scene,
         shaft=Shaft(speed=speed),
-        rotor=replace(scene.rotor, misalignment=0.0, runout=0.0, axial_runout=[], mass_centre=None),
-        stator=replace(scene.stator, misalignment=0.0, mass_centre=None),
+        rotor=replace(rotor, **aligned, runout=0.0, axial_runout=[], load=standing(rotor.load)),
+        stator=replace(stator, **aligned, load=standing(stator.load)),
         housing=Housing(),
     )
 
@@ -186,6 +187,11 @@ def _constant(scene: Scene, value_of: Callable[[PiecewiseLinear], float]) -> Sce
         table = getattr(scene, name)
         constant = {key: value_of(held) for key, held in vars(table).items() if isinstance(held, PiecewiseLinear)}
         scene = replace(scene, **{name: replace(table, **constant)})
+    for name in RING_NAMES:
+        ring = getattr(scene, name)
+        if ring.load is not None:
+            held = {key: value_of(h) for key, h in vars(ring.load).items() if isinstance(h, PiecewiseLinear)}
+            scene = replace(scene, **{name: replace(ring, load=replace(ring.load, **held))})
     return scene
 
 
@@ -239,7 +245,7 @@ def with_both_flexible_rings(scene: Scene) -> Scene:
     if present == "FMSR":
         return scene
     old, new = (scene.rotor, scene.stator) if present == "FMR" else (scene.stator, scene.rotor)
-    carried = {name: getattr(old, name) for name in CARRIED if name != "misalignment"}
+    carried = {name: getattr(old, name) for name in CARRIED if name not in ("misalignment", "load")}
     if present == "FMR":
         return replace(scene, stator=replace(new, **carried))
     own = {"misalignment": new.runout, "misalignment_phase": new.runout_phase, "runout": 0.0, "runout_phase": 0.0}

@@ -12,6 +12,7 @@ import numpy as np
 from ..dynamics.model import Model
 from ..dynamics.native import Value, at_each, load_value, propagate, states_along, thinnest_value
 from ..dynamics.run_state import RunState
+from ..dynamics.swept_motion import records
 from ..faces.contact import lay_surfaces
 from ..faces.film_thickness import h_min
 from ..faces.geometry import (
@@ -222,7 +223,7 @@ def reynolds_comparison(run: RunState) -> dict | None:
     model = run.model
     scene, (film, f) = model.scene, model.observed
     floor = scene.film.cavitation_pressure is not None
-    if model.unknowns.film_unknowns or waves_of(scene) or film.constant:
+    if model.unknowns.film_unknowns or waves_of(scene) or film.constant or film.as_given:
         return None
     options = Reynolds(cells_r=CELLS[0], cells_theta=CELLS[1], roughness="none", sectors=1,
                        cavitation="mass-conserving" if floor else "none")  # fmt: skip
@@ -341,8 +342,8 @@ def steady_tilt(model: Model) -> tuple[complex, float, str]:
         return 0.0, 0.0, "a ring that its secondary seal holds has no linear steady state: aligned"
     if model.unknowns.faces_tilt:
         return 0.0, 0.0, "aligned faces that press with a moment are no linear steady state: aligned"
-    if model.scene.shaft.motion or model.scene.housing.motion:
-        return 0.0, 0.0, "a motion by samples has no linear steady state: aligned"
+    if records(model.scene):
+        return 0.0, 0.0, "samples have no linear steady state: aligned"
     segment = model.segment()
     if not segment.harmonic:
         return 0.0, 0.0, "a sweep has no linear steady state: aligned"

@@ -77,6 +77,8 @@ def scene_cautions(scenario: Scenario, model: Model) -> list[Caution]:
 def _is_liquid(model) -> bool:
     """Whether the film is a liquid, and not coefficients of one's own."""
     film = model.scene.film
+    if model.interface.film.as_given:
+        return False
     return film.gas is None and not (isinstance(film.coefficients, Coefficients) and model.interface.film.constant)
 
 

@@ -10,7 +10,7 @@ from .. import archive
 from ..dynamics.intervals import constant_and_slope, largest_value
 from ..dynamics.model import Model
 from ..dynamics.run_state import Caution, Concern, RunState
-from ..dynamics.swept_motion import COARSE, PER_PERIOD, motions
+from ..dynamics.swept_motion import COARSE, PER_PERIOD, splines
 from ..faces.geometry import COLLAPSE, DZ, FLOOR
 from ..scenario.reader import Scenario
 from ..scenario.tables import Run
@@ -117,11 +117,11 @@ def _prepared(scenario, lowest):
             f"in all, {count} asked: raise run.samples_per_turn"
         )
         run.cautions.append(Caution(Concern.ALIASING, sentence))
-    for ring, sampled in motions(scenario.scene).items():
+    for key, sampled in splines(scenario.scene).items():
         if sampled.coarse > COARSE:
-            table, share = ("housing", "shaft")[ring], 100.0 * sampled.coarse
+            share = 100.0 * sampled.coarse
             sentence = (
-                f"aliasing: {share:.2g} % of the power of the rate of {table}.motion has fewer than {PER_PERIOD} "
+                f"aliasing: {share:.2g} % of the power of the rate of {key} has fewer than {PER_PERIOD} "
                 "samples a period: give it finer"
             )
             run.cautions.append(Caution(Concern.ALIASING, sentence))

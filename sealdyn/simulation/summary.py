@@ -14,6 +14,7 @@ from ..dynamics.run_state import Caution, Concern
 from ..faces.geometry import TOUCH
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE, density_of, gas_of
+from ..scene.loads import load_of
 from ..scene.radial import RadialScene
 from ..scene.rings import RING_NAMES, ROTOR, STATOR
 from ..scene.variants import uneven_supports
@@ -382,8 +383,9 @@ def _closed_form(segment, at, linear, tilt):
         found["road"] += "; frequencies incommensurate: sum of amplitudes"
     scene, floats = segment.model.scene, segment.model.unknowns.floats
     arrangement = (floats[STATOR], floats[ROTOR])
-    # The formulas know one stiffness and damping, whatever the frequency.
-    other = uneven_supports(scene) or segment.model.interface.stores
+    # The formulas know one stiffness and damping, whatever the frequency, and no load from outside.
+    loaded = any(load_of(ring) for ring in (scene.stator, scene.rotor))
+    other = uneven_supports(scene) or segment.model.interface.stores or loaded
     if arrangement == (True, True) or scene.stator.speed != 0.0 or other:
         return found
     ring = scene.stator if arrangement[0] else scene.rotor

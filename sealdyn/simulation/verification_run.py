@@ -12,7 +12,7 @@ from ..dynamics.intervals import constant_and_slope
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
 from ..dynamics.signals import samples
-from ..dynamics.swept_motion import motions
+from ..dynamics.swept_motion import splines
 from ..faces.geometry import FLOW_INNER, FORCE, INNER_PRESSURE, MOMENT_X, MOMENT_Y, OUTER_PRESSURE, TORQUE
 from ..numerics.piecewise_linear import initially
 from ..scene.gas import density_of, gas_of
@@ -388,5 +388,5 @@ def reference_rate(run) -> float:
             found += [abs(w), abs(w - stator - turning * tau)]
     found += [2 * math.pi * tone.frequency for tone in scene.housing.tones]
     found += [2 * math.pi * max(sweep.frequency) for sweep in scene.housing.sweeps]
-    found += [sampled.rate for sampled in motions(scene).values()]
+    found += [sampled.rate for sampled in splines(scene).values()]
     return max(found) or run.model.reference_rate

@@ -56,8 +56,9 @@ def coefficients_over_grooves(scenario, scene, settings) -> Answer:
         name: None if words is None else values_in_si(scenario, str(words), "rad/s", f"--{name}")
         for name, words in (("frequency", settings.frequency), ("speed", settings.speed))
     }
-    if settings.coning is not None:
-        raise SceneError("study.coefficients.coning", "a value", "nothing over grooves, as yet")
+    for name in ("coning", "clearance"):
+        if getattr(settings, name) is not None:
+            raise SceneError(f"study.coefficients.{name}", "a value", "nothing over grooves, as yet")
     frequencies = given["frequency"] or (max(abs(speed), 1.0) * FREQUENCIES).tolist()
     if min(frequencies) <= 0.0:
         expected = "frequencies above 0: a film over grooves has no one damping at rest"

@@ -12,6 +12,7 @@ from ..answers import Answer, Axis, Level, Panel, Series, Table
 from ..dynamics.model import Model
 from ..faces.film_thickness import h_min
 from ..quantities import in_words
+from ..scenario.errors import ScenarioError
 from ..scenario.settings import Words, values_in_si
 from ..scene.patterns import grooves_of, waves_of
 from ..scene.scene import SceneError
@@ -24,7 +25,7 @@ ACCURACY = 1e-10
 STIFFNESS_UNITS = [["N/m", "N/rad", "N/rad"], ["N", "N*m/rad", "N*m/rad"], ["N", "N*m/rad", "N*m/rad"]]
 DAMPING_UNITS = [[u.replace("/m", "*s/m").replace("/rad", "*s/rad") if "/" in u else u + "*s" for u in row]
                  for row in STIFFNESS_UNITS]  # fmt: skip
-AXES = ("speed", "frequency", "coning")
+AXES = ("speed", "frequency", "coning", "clearances")
 # Rows and columns of a matrix.
 ELEMENTS, FORCES = ("force", "motion"), ("force", "moment_x", "moment_y")
 NAMES = [f"{letter}_{row}_{column}" for letter in "kd" for row in ORDER for column in ORDER]
@@ -35,7 +36,8 @@ INFO = Info(
     grooved=True,
     aligned=True,
     units={
-        "speed": "rad/s", "frequency": "rad/s", "coning": "rad", "clearance": "m", "tilt": "rad", "axial_opening": "m",
+        "speed": "rad/s", "frequency": "rad/s", "coning": "rad", "clearance": "m", "clearances": "m",
+        "tilt": "rad", "axial_opening": "m",
         "stiffness": STIFFNESS_UNITS, "damping": DAMPING_UNITS,
         # Over grooves.
         "leakage": "m^3/s", "mass_flow": "kg/s", "torque": "N*m", "film_force": "N", "least_pressure": "Pa",
@@ -50,7 +52,7 @@ INFO = Info(
     along={
         **dict.fromkeys(("stiffness", "damping", "synchronous", "tilted"), ELEMENTS),
         **{f"against_{name}": (name, *ELEMENTS) for name in ("speed", "clearance", "tilt", "frequency")},
-        "map": ("speed", "frequency", "coning?", *ELEMENTS), "table": ("row",),
+        "map": ("speed", "frequency", "coning?", "clearances?", *ELEMENTS), "table": ("row",),
     },
 )  # fmt: skip
 # Elements in tilt: name, row, column, style.
@@ -66,7 +68,7 @@ MAP = (
 )
 MOST_LINES = 6
 
-SPEEDS, CONINGS = Words(Speed.__metadata__[0]), Words(Tilt.__metadata__[0])
+SPEEDS, CONINGS, CLEARANCES = (Words(kind.__metadata__[0]) for kind in (Speed, Tilt, Length))
 
 
 @dataclass(frozen=True)
@@ -93,6 +95,9 @@ class Settings:
     """Shaft speeds of that table, "500:2000 rad/s:7" or a list, each at the clearance that follows there."""
     coning: Annotated[str | float | None, CONINGS] = None
     """Conings of that table, "0:6 mrad:13" or a list."""
+    clearance: Annotated[str | float | None, CLEARANCES] = None
+    """Clearances of that table, "5:20 um:16" or a list, in place of conings; a film by numbers
+    (`film.model = "tabulated"`) reads it over clearance and speed."""
 
 
 def run(scenario, settings, tools) -> Answer:
@@ -135,16 +140,19 @@ def run(scenario, settings, tools) -> Answer:
             ("frequency", settings.frequency, "rad/s"),
             ("speed", settings.speed, "rad/s"),
             ("coning", settings.coning, "rad"),
+            ("clearance", settings.clearance, "m"),
         )
     }
     motion = asked["frequency"]
+    if asked["coning"] is not None and asked["clearance"] is not None:
+        raise ScenarioError(scenario.name, "study.coefficients.clearance", "conings and clearances", "one of them")
     if model.interface.stores:
         numbers["against_frequency"] = against_frequency(model, settings, speed, motion)
         numbers["synchronous"] = _listed(matrices(model, State(), omega=abs(speed))) if speed else None
     if any(values is not None for values in asked.values()):
         # Speeds that nobody asked go with frequencies only.
         speeds = asked["speed"] or ([speed] if motion is None else _speeds(settings, speed))
-        numbers["map"] = mapped(scene, ACCURACY, speeds, motion or [0.0], asked["coning"])
+        numbers["map"] = mapped(scene, ACCURACY, speeds, motion or [0.0], asked["coning"], asked["clearance"])
         numbers["table"] = columns_of(numbers["map"])
     return Answer(numbers, _found(numbers), _tables(numbers), _panels(numbers), _notes(numbers))
 
@@ -241,46 +249,49 @@ def _against_tilt(model, settings) -> dict:
 # --- the map -------------------------------------------------------------------------------------------
 
 
-def mapped(scene, accuracy: float, speeds, frequencies, conings=None) -> dict:
-    """{speed, frequency (rad/s), coning (rad, if asked)} and, over these in this order, `clearance` (m), `stiffness`
-    and `damping` (3, 3) of the aligned film; `failed` the reasons of points that cannot be, whose numbers are None.
+def mapped(scene, accuracy: float, speeds, frequencies, conings=None, clearances=None) -> dict:
+    """{speed, frequency (rad/s), coning (rad) or clearances (m), if asked} and, over these in this order, `clearance`
+    (m), `stiffness` and `damping` (3, 3) of the aligned film; `failed` the reasons of points that cannot be, whose
+    numbers are None.
 
     `scene` constant in time.  At every speed and coning it is the scene with these: a clearance that is given stays,
     one that the closing force decides follows.  A film that does not store has the same at every frequency.
     """
-    shape = (len(speeds), len(frequencies), 1 if conings is None else len(conings))
+    axis, key, values = ("coning", "film.coning", conings) if clearances is None else ("clearances", "", clearances)
+    shape = (len(speeds), len(frequencies), 1 if values is None else len(values))
     clearance, failed = np.full(shape, None), {}
     both = {name: np.full(shape, None) for name in ("stiffness", "damping")}
     for a, speed in enumerate(speeds):
-        for c, coning in enumerate([None] if conings is None else conings):
-            values = {"shaft.speed": float(speed)} | ({} if coning is None else {"film.coning": float(coning)})
+        for c, value in enumerate([None] if values is None else values):
+            there = with_values(scene, {"shaft.speed": float(speed)} | ({key: float(value)} if key and values else {}))
+            there = there if clearances is None else frozen_at_start(there, clearance=float(value))
             try:
-                model, found = Model(with_values(scene, values), accuracy), None
+                model, found = Model(there, accuracy), None
                 for b, omega in enumerate(frequencies):
                     if found is None or model.interface.stores:
                         found = [part.tolist() for part in matrices(model, State(), omega=omega)]
                     clearance[a, b, c], both["stiffness"][a, b, c], both["damping"][a, b, c] = model.clearance, *found
             except (SceneError, ValueError) as error:
-                failed.setdefault(str(error), []).append({"speed": float(speed), "coning": coning})
+                failed.setdefault(str(error), []).append({"speed": float(speed), axis: value})
     answer = {"speed": [float(w) for w in speeds], "frequency": [float(w) for w in frequencies]}
-    if conings is not None:
-        answer["coning"] = [float(v) for v in conings]
+    if values is not None:
+        answer[axis] = [float(v) for v in values]
     flat = {"clearance": clearance, **both}
-    for name, values in flat.items():
+    for name, held in flat.items():
         nothing = None if name == "clearance" else [[None] * 3] * 3
-        listed = [[[nothing if v is None else v for v in row] for row in plane] for plane in values]
-        answer[name] = listed if conings is not None else [[row[0] for row in plane] for plane in listed]
+        listed = [[[nothing if v is None else v for v in row] for row in plane] for plane in held]
+        answer[name] = listed if values is not None else [[row[0] for row in plane] for plane in listed]
     return answer | {"failed": [{"reason": reason, "points": points} for reason, points in failed.items()]}
 
 
 def columns_of(found: dict) -> dict:
-    """The same as columns of numbers, SI: every `speed`, `frequency` (rad/s) and, if asked, `coning` (rad) with its
+    """The same as columns of numbers, SI: every `speed`, `frequency` (rad/s) and, if asked, `coning` (rad) and
     `clearance` (m), and k_ROW_COLUMN and d_ROW_COLUMN for rows and columns of ORDER."""
     axes = [name for name in AXES if name in found]
     grid = np.meshgrid(*(found[name] for name in axes), indexing="ij")
-    table = {name: values.ravel().tolist() for name, values in zip(axes, grid, strict=True)}
+    table = {name: values.ravel().tolist() for name, values in zip(axes, grid, strict=True) if name != "clearances"}
     parts = [np.array(found[name], dtype=object).reshape(-1, 9) for name in ("stiffness", "damping")]
-    if "coning" in found:
+    if len(axes) == 3:
         table["clearance"] = np.array(found["clearance"], dtype=object).ravel().tolist()
     return table | dict(zip(NAMES, np.hstack(parts).T.tolist(), strict=True))
 
@@ -419,14 +430,14 @@ def _from_zero(axis: Axis, values, room: float) -> Axis:
 
 
 def _map_panels(found) -> list[Panel]:
-    """The map over its longest axis, the coning before the others; a line for each of some of the others."""
-    quantities = {"coning": "rad", "frequency": "frequency", "speed": "speed"}
+    """The map over its longest axis, clearance and coning before the others; a line for each of some of the others."""
+    quantities = {"clearances": "clearance", "coning": "rad", "frequency": "frequency", "speed": "speed"}
     axes = [name for name in AXES if name in found]
     along = next((name for name in quantities if len(found.get(name, ())) > 1), "speed")
     others = [name for name in axes if name != along]
     places = list(np.ndindex(*(len(found[name]) for name in others)))
     places = [places[k] for k in sorted({round(k) for k in np.linspace(0, len(places) - 1, MOST_LINES)})]
-    axis, panels = Axis(quantities[along], along), []
+    axis, panels = Axis(quantities[along], along.removesuffix("s")), []
     matrices = {name: np.array(found[name], dtype=float) for name in ("stiffness", "damping")}
     clearance = np.array(found["clearance"], dtype=float)
     drawn = [(title, matrices[name][(..., *entry)], quantity) for title, name, entry, quantity in MAP]

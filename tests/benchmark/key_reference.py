@@ -37,7 +37,9 @@ JSON schema (`sealdyn schema`), which editors read too.
 - `[shaft.motion]` and `[housing.motion]` move the carrier of rotor or stator by samples: as lists, or from a `file`
   beside the scenario, CSV with a line of names (`time (ms), axial (um), tilt_x (urad), tilt_y (urad)`, others are not
   read) or HDF5 (datasets with these names, units as attribute `units` or `unit`, packed numbers as the CF conventions
-  have them; missing samples are refused); SI without a unit.
+  have them; missing samples are refused); SI without a unit.  Measured accelerations (`axial_acceleration`) are
+  integrated twice, their drift removed.  `[stator.load.samples]` reads `force`, `moment_x`, `moment_y` likewise,
+  `[film.tabulated]` `clearance`, `speed`, `k_axial_axial` and its like, or the archive of `sealdyn study coefficients`.
 - A number without a unit that no seal has, in SI, is told by `check` and by every run, with what it may have meant.
 - The arrangement follows from the supports: a table `[stator.support]` makes the stator float (FMS), `[rotor.support]`
   the rotor (FMR), both make both float (FMSR).

@@ -12,7 +12,7 @@ from scipy.interpolate import make_interp_spline
 
 from sealdyn.dynamics.equations import LEG_AT
 from sealdyn.dynamics.imposed_motion import (
-    OSCILLATORS,
+    MOTION_AT,
     PER_RING,
     Z_ACCELERATION,
     Z_RATE,
@@ -67,7 +67,7 @@ def test_kernel_is_the_spline_and_its_derivatives():
         # Of a rigid rotor the gap feels all of it, against the stator.
         assert gap == pytest.approx(-c[PER_RING : PER_RING + 6], rel=1e-12, abs=1e-20)
     assert not np.any(c[:PER_RING])
-    assert segment.p[LEG_AT + OSCILLATORS - 2] == 0.0
+    assert segment.p[LEG_AT + MOTION_AT] == 0.0
 
 
 def test_a_stretch_of_time_has_the_pieces_it_needs():

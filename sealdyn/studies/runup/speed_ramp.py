@@ -13,6 +13,7 @@ from ...dynamics.run_state import Concern
 from ...faces.geometry import COLLAPSE, TOUCH, smallest_gap
 from ...numerics.time_series import centres, peak, resolution, tracked, waterfall
 from ...scene.excitation import Housing
+from ...scene.rings import RING_NAMES
 from .ramp_run import RampCycle, run_cycle
 
 # A whirl is small below this share of clearance/outer radius: the square of it is lost in the growth.
@@ -40,7 +41,9 @@ class Steady:
     """Linear steady state of a scene over the shaft speed: one order of the relative tilt (or of the axial gap)."""
 
     def __init__(self, scene):
-        scene = replace(frozen_at_end(scene), housing=Housing())
+        # Neither what shakes the housing nor what pulls at the rings goes with the speed.
+        rings = {name: replace(getattr(scene, name), load=None) for name in RING_NAMES}
+        scene = replace(frozen_at_end(scene), housing=Housing(), **rings)
         self.speed = 1.0
         self.model = Model(replace(scene, shaft=replace(scene.shaft, speed=self.speed)))
         self.tilting = self.model.unknowns.with_tilt

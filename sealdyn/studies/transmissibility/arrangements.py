@@ -171,8 +171,8 @@ def quiet(scene: Scene) -> Scene:
         # That of heated faces follows the speed, under the same closing force.
         scene = frozen_at_start(scene, clearance=Model(scene).clearance)
     scene = replace(scene, housing=Housing(), initial=Initial(), shaft=replace(scene.shaft, whirl=[], motion=None))
-    rings = {"rotor": replace(scene.rotor, axial_runout=[], mass_centre=None),
-             "stator": replace(scene.stator, mass_centre=None)}  # fmt: skip
+    rings = {"rotor": replace(scene.rotor, axial_runout=[], mass_centre=None, load=None),
+             "stator": replace(scene.stator, mass_centre=None, load=None)}  # fmt: skip
     return replace(scene, **rings)
 
 
