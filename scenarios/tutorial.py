@@ -120,3 +120,12 @@ print(shell("sealdyn compare outputs/first.h5 outputs/better.h5"))
 shell("sealdyn report outputs/first.h5 outputs/better.h5 outputs/better-stability.h5 --out review.html")
 assert "better" in Path("review.html").read_text(encoding="utf-8")
 print("the page is review.html")
+
+# %% 11. Step by step, as a controller or another program does: slower, until the film takes 30 W.
+steps = sealdyn.Simulation(better)
+state = steps.state
+while state["friction_power"] > 30.0:
+    steps.set(shaft_speed=0.99 * state["shaft_speed"])
+    state = steps.step(1e-3)
+print(steps.time, state["shaft_speed"])  # 19 ms, 255 rad/s; power goes with the square of the speed
+assert about(state["shaft_speed"], 308.923 * 0.99 ** round(steps.time / 1e-3))

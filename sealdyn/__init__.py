@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from .simulation.result import Result
     from .simulation.run import RunEnded, evaluate, run
     from .simulation.simulate import simulate
+    from .simulation.stepping import Simulation
     from .studies._runner import Answer, list_studies, run_study, schema, study
 
 __version__ = "0.1.0"
@@ -36,6 +37,7 @@ __all__ = [
     "RunEnded",
     "Scenario",
     "ScenarioError",
+    "Simulation",
     "animate",
     "check",
     "compare",
@@ -69,6 +71,7 @@ _PLACES = {
     "simulation.result": ("Result",),
     "simulation.run": ("RunEnded", "evaluate", "run"),
     "simulation.simulate": ("simulate",),
+    "simulation.stepping": ("Simulation",),
     "studies._runner": ("Answer", "list_studies", "run_study", "schema", "study"),
 }
 

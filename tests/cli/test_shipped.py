@@ -151,5 +151,5 @@ def test_the_tutorial_does_what_it_says(tmp_path):
 
 def test_every_cell_is_short_and_holds_a_number_to_what_it_says():
     _, *cells = TUTORIAL.read_text().split("\n# %% ")
-    assert [cell.split(".")[0] for cell in cells] == [str(number + 1) for number in range(10)]
+    assert [cell.split(".")[0] for cell in cells] == [str(number + 1) for number in range(11)]
     assert all("assert" in cell and len(cell.splitlines()) <= 20 for cell in cells)

@@ -56,6 +56,19 @@ def runs(scenario: sealdyn.Scenario, folder: Path) -> None:
     assert_type(sealdyn.simulate_many(scenario, [{"rotor.runout": 1e-5}], ["h_min.value"], workers=1), xarray.Dataset)
 
 
+def steps(scenario: sealdyn.Scenario) -> None:
+    """A run in steps."""
+    seal = sealdyn.Simulation(scenario, {"rotor.runout": "20 urad"})
+    seal.set(shaft_speed="990 rad/s", shaft_tilt_x=(1e-6, 0.0, 2.0))
+    kept = seal.snapshot()
+    assert_type(seal.step(1e-4), dict[str, float])
+    seal.restore(kept)
+    assert_type(seal.step_to(2e-4)["h_min"], float)
+    assert_type(seal.time, float)
+    assert_type(seal.units, dict[str, str])
+    assert_type(seal.events, list[dict[str, Any]])
+
+
 def studies(scenario: sealdyn.Scenario, folder: Path) -> None:
     """With an archive and without."""
     answer = sealdyn.study("equilibrium", scenario, workers=1, points=5)
@@ -83,5 +96,6 @@ def main(folder: Path) -> None:
     assert_type(sealdyn.__version__, str)
     scenario = scenarios()
     runs(scenario, folder)
+    steps(scenario)
     studies(scenario, folder)
     verbs(scenario, folder)
