@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from .simulation.simulate import simulate
     from .simulation.stepping import Simulation
     from .studies._runner import Answer, list_studies, run_study, schema, study
+    from .studies._shaft_table import dyrobes_table, shaft_table
 
 __version__ = "0.1.0"
 __all__ = [
@@ -42,6 +43,7 @@ __all__ = [
     "check",
     "compare",
     "design_rules",
+    "dyrobes_table",
     "evaluate",
     "example",
     "examples",
@@ -52,6 +54,7 @@ __all__ = [
     "run",
     "run_study",
     "schema",
+    "shaft_table",
     "simulate",
     "simulate_many",
     "study",
@@ -73,6 +76,7 @@ _PLACES = {
     "simulation.simulate": ("simulate",),
     "simulation.stepping": ("Simulation",),
     "studies._runner": ("Answer", "list_studies", "run_study", "schema", "study"),
+    "studies._shaft_table": ("dyrobes_table", "shaft_table"),
 }
 
 

@@ -76,6 +76,9 @@ def studies(scenario: sealdyn.Scenario, folder: Path) -> None:
     assert_type(answer.verdict, list[str])
     assert_type(answer.data, xarray.Dataset)
     assert_type(answer.plot(), Figure)
+    table = sealdyn.shaft_table(scenario, [900.0, "9000 rpm"], whirl_ratio=0.5)
+    assert_type(table, dict[str, Any])
+    assert_type(sealdyn.dyrobes_table(table, 3, "seal"), str)
     assert_type(sealdyn.run_study("equilibrium", scenario, folder / "e.h5", workers=1), dict[str, Any])
 
 
