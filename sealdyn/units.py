@@ -6,6 +6,7 @@ revolutions per time, so a speed in Hz and a frequency in rad/s both come out ri
 
 import math
 import re
+from collections.abc import Callable
 from dataclasses import dataclass, is_dataclass
 from decimal import Decimal, DecimalException
 from functools import cache
@@ -48,8 +49,19 @@ class Usual(NamedTuple):
         return value == 0.0 or self.least <= abs(value) <= self.most
 
 
+class ReadFromFile:
+    """What pydantic reads by its `read`; nothing of pydantic is imported before it asks."""
+
+    read: Callable
+
+    def __get_pydantic_core_schema__(self, source, handler):
+        from pydantic_core import core_schema
+
+        return core_schema.no_info_plain_validator_function(self.read)
+
+
 @dataclass(frozen=True)
-class Quantity:
+class Quantity(ReadFromFile):
     """What a key holds: its name, SI unit, an example for messages, other units it takes at the same factor (`also`),
     its `least` value (SI), itself excluded if `open`, and what is `usual`."""
 
@@ -122,12 +134,6 @@ class Quantity:
                 f"{quoted(text)} (total indicator reading)", f"{self.expected()}; TIR: rotor.runout only"
             )
         return number, unit
-
-    # Pydantic asks for these two; nothing of pydantic is imported before it does.
-    def __get_pydantic_core_schema__(self, source, handler):
-        from pydantic_core import core_schema
-
-        return core_schema.no_info_plain_validator_function(self.read)
 
     def __get_pydantic_json_schema__(self, schema, handler) -> dict:
         number = {"type": "number"}
@@ -222,7 +228,7 @@ def quoted(value: Any, most: int = 60) -> str:
 
 
 @dataclass(frozen=True)
-class VaryingQuantity:
+class VaryingQuantity(ReadFromFile):
     """A `Quantity` that may also be a function of time, `PiecewiseLinear`."""
 
     quantity: Quantity
@@ -268,11 +274,6 @@ class VaryingQuantity:
             if k > 1 and time[k] == time[k - 2]:
                 raise QuantityError(f"time {time[k]:g} s three times", "a time at most twice (a step)")
         return PiecewiseLinear(time, value)
-
-    def __get_pydantic_core_schema__(self, source, handler):
-        from pydantic_core import core_schema
-
-        return core_schema.no_info_plain_validator_function(self.read)
 
     def __get_pydantic_json_schema__(self, schema, handler) -> dict:
         constant = self.quantity.__get_pydantic_json_schema__(None, None)
@@ -320,7 +321,7 @@ class Varying:
 
 
 @dataclass(frozen=True)
-class ListedQuantity:
+class ListedQuantity(ReadFromFile):
     """Several of a `Quantity`: a list, or, where `alone`, also one that stands for all."""
 
     quantity: Quantity
@@ -340,11 +341,6 @@ class ListedQuantity:
         """What the key expects, in words, for a message."""
         one = self.quantity.expected()
         return f"{one}, or a list of them" if self.alone else f"a list, each {one}"
-
-    def __get_pydantic_core_schema__(self, source, handler):
-        from pydantic_core import core_schema
-
-        return core_schema.no_info_plain_validator_function(self.read)
 
     def __get_pydantic_json_schema__(self, schema, handler) -> dict:
         entry = self.quantity.__get_pydantic_json_schema__(None, None)

@@ -106,9 +106,8 @@ def _seal_type(seal: Seal, limit) -> Finding:
     if seal.scene.film.gas is not None:
         return other_seals("the film is a gas")
     asked, diameter, runout = seal.application, seal.application.shaft_diameter, seal.application.shaft_runout
-    total = (
-        None if runout is None and asked.eccentricity is None else 0.5 * (runout or 0.0) + (asked.eccentricity or 0.0)
-    )
+    offsets = [length for length in (runout and 0.5 * runout, asked.eccentricity) if length is not None]
+    total = sum(offsets) if offsets else None
     duty = Duty(seal.sliding_speed, seal.sealed_pressure, runout, total, asked.axial_displacement, diameter)
     return seal_type_finding(duty, "face seal")
 
@@ -134,11 +133,9 @@ def _misalignment(seal: Seal, limit) -> Finding:
     """Pass up to 0.0005 rad, the largest of both rings' tilts and of the runout of the data sheet."""
     rotor, stator = seal.scene.rotor, seal.scene.stator
     key = "misalignment" if rotor.support else "runout"
-    tilts = {
-        f"rotor.{key}": largest_value(getattr(rotor, key)),
-        "stator.misalignment": largest_value(stator.misalignment),
-    }
-    tilts["application.face_runout"] = (seal.application.face_runout or 0.0) / seal.outer_diameter
+    tilts = {f"rotor.{key}": largest_value(getattr(rotor, key)),
+             "stator.misalignment": largest_value(stator.misalignment),
+             "application.face_runout": (seal.application.face_runout or 0.0) / seal.outer_diameter}  # fmt: skip
     worst = max(tilts, key=tilts.get)
     if tilts[worst] == 0.0:
         return missing_keys(*tilts)
@@ -187,13 +184,10 @@ def _finish(seal: Seal, limit) -> Finding:
         return missing_keys("contact.roughness")
     roughness, (hard, nose) = seal.scene.contact.roughness, limit
     most, with_nose = math.sqrt(2) * hard, math.hypot(hard, nose)
-    sentence = (
-        f"both faces are rough by {1e6 * roughness:.4g} um together; two of 0.1 um have {1e6 * most:.2g} um, with a "
-        f"carbon nose up to {1e6 * with_nose:.2g} um"
-    )
-    if most < roughness <= with_nose:
-        return limit_finding(sentence, roughness, most=most, beyond=Verdict.NOTE)
-    return limit_finding(sentence, roughness, most=most)
+    sentence = (f"both faces are rough by {1e6 * roughness:.4g} um together; two of 0.1 um have {1e6 * most:.2g} um, "
+                f"with a carbon nose up to {1e6 * with_nose:.2g} um")  # fmt: skip
+    beyond = Verdict.NOTE if roughness <= with_nose else Verdict.FAIL
+    return limit_finding(sentence, roughness, most=most, beyond=beyond)
 
 
 def _film_thickness(seal: Seal, limit) -> Finding:

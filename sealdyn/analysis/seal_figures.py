@@ -7,7 +7,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from ..dynamics.interface import rest_state
+from ..dynamics.imposed_motion import rest_state
 from ..dynamics.intervals import constant_and_slope, largest_value
 from ..dynamics.model import Model
 from ..faces.contact import contact_load_and_friction

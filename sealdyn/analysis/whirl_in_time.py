@@ -2,6 +2,7 @@
 settles above its threshold, contact included: limit cycle, rub, collapse."""
 
 import math
+from itertools import pairwise
 
 import numpy as np
 
@@ -289,3 +290,19 @@ def _late(turns, period_map, speed) -> dict:
         "friction_power": float(turns.friction_power[half].mean()),
         "h_min": float(turns.lowest[half].min()),
     }
+
+
+def between(rows, speeds):
+    """The neighbouring ((speed, row), (speed, row)) between which decay turns into growth, both decided; or None."""
+    good = [(w, row) for w, row in zip(speeds, rows, strict=True) if "failed" not in row and row["decided"]]
+    for a, b in pairwise(good):
+        if a[1]["rate"] < 0 < b[1]["rate"]:
+            return a, b
+    return None
+
+
+def line_crossing(a, b) -> tuple[float, float]:
+    """Speed (rad/s) where the line between two rates crosses zero, and its uncertainty: theirs over the slope."""
+    (low, p), (high, q) = a, b
+    slope = (q["rate"] - p["rate"]) / (high - low)
+    return float(low - p["rate"] / slope), float(max(p["uncertainty"], q["uncertainty"]) / slope)

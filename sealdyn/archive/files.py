@@ -328,11 +328,8 @@ def seal(file) -> None:
 
 def is_whole(file) -> bool:
     """Whether an archive says what it said when it was sealed, whatever has been added; True of one without a seal."""
-    text = file.attrs.get(SEAL)
-    if text is None:
-        return True
-    digest, *names = str(text).split(" ")
-    return set(names) <= set(file.attrs) and digest == _digest(file, names)
+    digest, *names = str(file.attrs.get(SEAL, "")).split(" ")
+    return not digest or (set(names) <= set(file.attrs) and digest == _digest(file, names))
 
 
 def _digest(file, names) -> str:

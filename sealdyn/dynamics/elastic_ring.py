@@ -26,7 +26,8 @@ from ..numerics.piecewise_linear import initially
 from ..scene.contact import HALF_HEIGHT
 from ..scene.film import aligned_gaps, coned
 from ..scene.scene import SceneError
-from .interface import Asked, Interface, flow_at_rest, prepared, rest_state
+from .imposed_motion import rest_state
+from .interface import Asked, Interface, flow_at_rest, prepared
 
 # Angles of a wave, and radii, for the asperities.
 FINE, RADII = 2048, 16

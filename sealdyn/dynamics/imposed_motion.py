@@ -11,14 +11,29 @@ from fractions import Fraction
 
 import numpy as np
 
-from ..faces.geometry import CONING_CHANGE, INNER_PRESSURE, OUTER_PRESSURE, TEMPERATURE, VISCOSITY
+from ..faces.geometry import (
+    CONING_CHANGE,
+    DZ,
+    GAP_STATE_SIZE,
+    INNER_PRESSURE,
+    MEAN_SPIN,
+    OUTER_PRESSURE,
+    SPIN_DIFFERENCE,
+    TEMPERATURE,
+    VISCOSITY,
+)
 from ..numerics.kernel import inner_kernel, outer_kernel
-from ..numerics.piecewise_linear import points
-from ..scene.film import coning_change
+from ..numerics.piecewise_linear import initially, points
+from ..scene.contact import contact_thresholds, finish
+from ..scene.film import aligned_gaps, coning_change
 from ..scene.gas import viscosity_of
 from ..scene.rings import ROTOR, STATOR
-from .intervals import Interval, constant_and_slope, modulo_turn
+from .intervals import Interval, constant_and_slope, modulo_turn, spins
 from .swept_motion import AXIAL_SHARE, SWEEP_ROW, motion_at, motions, piece_at, sweep_at
+
+# Steps of differences about a state at rest, in the thinnest film: four of them reach to either side; the least, as a
+# share of them.
+STEP, NEAREST = 0.01, 4e-6
 
 # --- Fluid and faces at rest ---------------------------------------------------------------------------
 
@@ -55,6 +70,52 @@ def set_conditions(s, scene, value, speed=None) -> None:
         s[slot] = value(quantity)
     s[CONING_CHANGE] = coning_change(scene, value, speed)
 
+
+def rest_state(scene, clearance, interval=None, mean_spin=None, shift=0.0, pace=None):
+    """Gap state of the aligned rings at rest at an interval's start, the gap `shift` (m) wider than the clearance, and
+    steps for derivatives about it; `mean_spin` (rad/s) in place of the scene's, `pace` (1/s) of the motion that is
+    tried in place of it."""
+    s = np.zeros(GAP_STATE_SIZE)
+    s[DZ] = shift
+    clearance = clearance + shift
+    first = (lambda q: constant_and_slope(q, interval)[0]) if interval else initially
+    s[MEAN_SPIN], s[SPIN_DIFFERENCE] = spins(scene, interval)
+    if mean_spin is not None:
+        # It is the rotor that turns otherwise.
+        s[SPIN_DIFFERENCE] += 2.0 * (mean_spin - s[MEAN_SPIN])
+        s[MEAN_SPIN] = mean_spin
+    speed = s[MEAN_SPIN] + 0.5 * s[SPIN_DIFFERENCE]
+    set_conditions(s, scene, first, speed)
+    floor = contact_thresholds(scene.contact)[0] if scene.contact else None
+    widest, length = (STEP * gap for gap in _analytic(scene, clearance, s[CONING_CHANGE], floor))
+    radius, pace = scene.film.outer_radius, max(abs(s[MEAN_SPIN]), 1.0) if pace is None else pace
+    return s, (length, length / radius, widest * pace, widest / radius * pace)
+
+
+def asperity_steps(scene, clearance, change):
+    """Steps for derivatives of the asperities about aligned faces at rest, as those of `rest_state`; of rates, which
+    do nothing to them, any."""
+    length = _analytic(scene, clearance, change, contact_thresholds(scene.contact)[1])[1]
+    # Few asperities reach far: how many changes by a factor over one rms.
+    length = STEP * min(length, finish(scene.contact))
+    tilt = length / scene.film.outer_radius
+    return length, tilt, length, tilt
+
+
+def _analytic(scene, clearance, coning_change, change) -> tuple[float, float]:
+    """The thinnest film (m) of the aligned faces, or the floor of rough ones, and how much of it is left where a law of
+    rough faces, which changes at the film thickness `change` (m), does so at an edge nearby: the four steps of
+    differences do not reach half as far, unless it is so near that the rounding of the force says more than the
+    change."""
+    gaps = [h for _, h in aligned_gaps(scene.film, clearance, coning_change)]
+    if not scene.contact:
+        return min(gaps), min(gaps)
+    thinnest = max(min(gaps), contact_thresholds(scene.contact)[0])
+    nearest = min(abs(h - change) for h in gaps)
+    return thinnest, min(thinnest, max(0.1 / STEP * nearest, NEAREST * thinnest))
+
+
+# --- Block ---------------------------------------------------------------------------------------------
 
 ROTOR_SPEED, STATOR_SPEED, VISCOSITY_AT, INNER_AT, OUTER_AT, TEMPERATURE_AT, CLOSING_AT = range(0, 14, 2)
 # Change of the coning, and what it has of the shaft speed squared (rad s^2); angles (rad, modulo one turn) of both

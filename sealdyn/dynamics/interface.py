@@ -20,23 +20,20 @@ from ..faces.geometry import (
     FORCE,
     GAP_STATE_SIZE,
     INNER_PRESSURE,
-    MEAN_SPIN,
     MOMENT_X,
     MOMENT_Y,
     OUTER_PRESSURE,
-    SPIN_DIFFERENCE,
     TORQUE,
     face_parameters,
 )
 from ..films import film_named, film_of
 from ..numerics.piecewise_linear import initially
-from ..scene.contact import contact_thresholds, finish
-from ..scene.film import Coefficients, aligned_gaps, cells_of, coned
+from ..scene.film import Coefficients, cells_of, coned
 from ..scene.patterns import grooves_of, waves_of
 from ..scene.scene import Closing, SceneError
 from .condensation import NOISE, FilmDerivatives, LinearFilm, Slopes, film_slopes, linearise
 from .equilibrium import settle
-from .imposed_motion import set_conditions
+from .imposed_motion import asperity_steps, rest_state
 from .intervals import constant_and_slope, spins
 
 # Relative error of the quadrature of a film that is linearised: what a run is asked for does not matter to a verdict.
@@ -48,8 +45,6 @@ CONDENSED, FORMULA = 1e-9, 1e-13
 FAST = 1e9
 # Rounding of a gap, as a share of the clearance, and how far beyond their estimate errors of rough faces may be.
 GAP_NOISE, SURE = 4e-16, 3.0
-# Steps of differences, in the thinnest film: four of them reach to either side; the least, as a share of them.
-STEP, NEAREST = 0.01, 4e-6
 
 
 class Interface:
@@ -327,27 +322,6 @@ def _over_grooves(asked):
     return extrapolated_force(asked.scene)
 
 
-def rest_state(scene, clearance, interval=None, mean_spin=None, shift=0.0, pace=None):
-    """Gap state of the aligned rings at rest at an interval's start, the gap `shift` (m) wider than the clearance, and
-    steps for derivatives about it; `mean_spin` (rad/s) in place of the scene's, `pace` (1/s) of the motion that is
-    tried in place of it."""
-    s = np.zeros(GAP_STATE_SIZE)
-    s[DZ] = shift
-    clearance = clearance + shift
-    first = (lambda q: constant_and_slope(q, interval)[0]) if interval else initially
-    s[MEAN_SPIN], s[SPIN_DIFFERENCE] = spins(scene, interval)
-    if mean_spin is not None:
-        # It is the rotor that turns otherwise.
-        s[SPIN_DIFFERENCE] += 2.0 * (mean_spin - s[MEAN_SPIN])
-        s[MEAN_SPIN] = mean_spin
-    speed = s[MEAN_SPIN] + 0.5 * s[SPIN_DIFFERENCE]
-    set_conditions(s, scene, first, speed)
-    floor = contact_thresholds(scene.contact)[0] if scene.contact else None
-    widest, length = (STEP * gap for gap in _analytic(scene, clearance, s[CONING_CHANGE], floor))
-    radius, pace = scene.film.outer_radius, max(abs(s[MEAN_SPIN]), 1.0) if pace is None else pace
-    return s, (length, length / radius, widest * pace, widest / radius * pace)
-
-
 def flow_at_rest(interface, s, observed=None) -> None:
     """Loads, flows and friction of film and asperities at a gap state at rest, into it; `observed` film and block in
     place of the interface's own.  Raises SceneError."""
@@ -357,32 +331,9 @@ def flow_at_rest(interface, s, observed=None) -> None:
         contact.contact_load_and_friction(interface.contact, f, s)
 
 
-def asperity_steps(scene, clearance, change):
-    """Steps for derivatives of the asperities about aligned faces at rest, as those of `rest_state`; of rates, which
-    do nothing to them, any."""
-    length = _analytic(scene, clearance, change, contact_thresholds(scene.contact)[1])[1]
-    # Few asperities reach far: how many changes by a factor over one rms.
-    length = STEP * min(length, finish(scene.contact))
-    tilt = length / scene.film.outer_radius
-    return length, tilt, length, tilt
-
-
 def _known(stiffness, damping, error) -> Slopes:
     """Stiffness and damping known to a relative `error`."""
     return Slopes(stiffness, damping, error * np.abs(stiffness), error * np.abs(damping))
-
-
-def _analytic(scene, clearance, coning_change, change) -> tuple[float, float]:
-    """The thinnest film (m) of the aligned faces, or the floor of rough ones, and how much of it is left where a law of
-    rough faces, which changes at the film thickness `change` (m), does so at an edge nearby: the four steps of
-    differences do not reach half as far, unless it is so near that the rounding of the force says more than the
-    change."""
-    gaps = [h for _, h in aligned_gaps(scene.film, clearance, coning_change)]
-    if not scene.contact:
-        return min(gaps), min(gaps)
-    thinnest = max(min(gaps), contact_thresholds(scene.contact)[0])
-    nearest = min(abs(h - change) for h in gaps)
-    return thinnest, min(thinnest, max(0.1 / STEP * nearest, NEAREST * thinnest))
 
 
 def linearised_film(wrench, f, scene, clearance, interval=None, mean_spin=None, shift=0.0, pace=None):

@@ -224,3 +224,18 @@ def _with_reversals(speed: PiecewiseLinear) -> list[float]:
         if w0 * w1 < 0.0 and t1 > t0:
             times.add(t0 + (t1 - t0) * w0 / (w0 - w1))
     return sorted(times)
+
+
+def common_period(frequencies, most: int = 64) -> float | None:
+    """Shortest common period (s) of angular frequencies (rad/s), None if they are incommensurate (no ratio of
+    whole numbers up to `most` within 1e-9)."""
+    moving = sorted({abs(w) for w in frequencies if w != 0.0})
+    if not moving:
+        return None
+    base, multiple = moving[0], 1
+    for w in moving[1:]:
+        ratio = Fraction(w / base).limit_denominator(most)
+        if abs(ratio - Fraction(w / base)) > 1e-9 * ratio:
+            return None
+        multiple = math.lcm(multiple, ratio.denominator)
+    return 2 * math.pi / base * multiple

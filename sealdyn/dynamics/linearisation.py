@@ -11,8 +11,7 @@ from ..scene.patterns import grooves_of, waves_of
 from ..scene.rings import ROTOR, STATOR, stuck_support
 from ..scene.scene import SceneError
 from .equilibrium import axial_shift
-from .imposed_motion import AXIAL, FIXED_AXIS, MOMENT, OWN, ROW, TURNING, UNBALANCE
-from .interface import rest_state
+from .imposed_motion import AXIAL, FIXED_AXIS, MOMENT, OWN, ROW, TURNING, UNBALANCE, rest_state
 from .intervals import constant_and_slope, modulo_turn
 from .modes import MOTIONS, QUARTER_TURN, FilmDoubt, Harmonic, LinearScene, RingNumbers
 from .stability_thresholds import Whirl, all_at_once, one_by_one

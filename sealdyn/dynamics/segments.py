@@ -22,8 +22,7 @@ from .imposed_motion import (
     imposed_block,
     thermal_coning,
 )
-from .intervals import Interval, constant_and_slope, modulo_turn
-from .modes import common_period
+from .intervals import Interval, common_period, constant_and_slope, modulo_turn
 from .native import native, rates_along
 from .step_bounds import BEND, REACH, largest_swing
 from .swept_motion import fastest_sweep, largest_sweep, motions, sweeps_of, sweeps_of_segment

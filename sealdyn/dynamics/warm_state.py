@@ -46,7 +46,8 @@ from ..scene.scene import Closing, SceneError
 from ..status import Status
 from .equilibrium import closing_law, crossing, equilibria
 from .heated_rings import ThermalStates, heated_body
-from .interface import Asked, Interface, flow_at_rest, lender, opening_law, prepared, rest_state
+from .imposed_motion import rest_state
+from .interface import Asked, Interface, flow_at_rest, lender, opening_law, prepared
 
 # Rises that are looked at between the first, as a share of the last, and the end of the liquid's table.
 SCANNED, FIRST = 60, 1e-4

@@ -1,7 +1,7 @@
 """The figure of any answer: its panels, drawn from plain data with units from `quantities`."""
 
 import importlib.util
-from itertools import groupby
+from itertools import groupby, pairwise
 from textwrap import fill
 
 import numpy as np
@@ -81,7 +81,8 @@ def sheet_of(panels: list[Panel], title: str, below: str, bold: str, colour: str
             rows.append([])
         rows[-1].append(stack)
     alone = ALONE if len(rows) == 1 else IN_ROWS
-    heights = [max(_height(stack, alone) for stack in row) for row in rows]
+    heights = [max(alone * stack[0].tall if len(stack) == 1 else STACKED * sum(panel.tall for panel in stack)
+                   for stack in row) for row in rows]  # fmt: skip
     figure = sheet(WIDTHS[max(map(len, rows)) - 1], 1.1 + sum(heights))
     top = heading(figure, title, below, bold, colour)
     width = figure.get_figwidth()
@@ -96,23 +97,19 @@ def sheet_of(panels: list[Panel], title: str, below: str, bold: str, colour: str
 
 
 def _stacks(panels) -> list[list[Panel]]:
-    stacks: list[list[Panel]] = []
-    for panel in panels:
-        if panel.below and stacks:
-            stacks[-1].append(panel)
-        else:
-            stacks.append([panel])
-    return stacks
-
-
-def _height(stack, alone: float) -> float:
-    return alone * stack[0].tall if len(stack) == 1 else STACKED * sum(panel.tall for panel in stack)
+    first = [k for k, panel in enumerate(panels) if k == 0 or not panel.below]
+    return [panels[a:b] for a, b in pairwise([*first, len(panels)])]
 
 
 def _draw_stack(figure, place, stack, width: float) -> None:
     """Panels above one another; neighbours of one quantity along x share that axis."""
     cells = place.subgridspec(len(stack), 1, height_ratios=[panel.tall for panel in stack])
-    alike = [list(group) for _, group in groupby(enumerate(stack), key=lambda held: _along(held[1]))]
+
+    def along(held):
+        x, panel = held[1].x, held[1]
+        return x.quantity, x.label, x.scale, tuple(x.words), panel.polar, bool(panel.series)
+
+    alike = [list(group) for _, group in groupby(enumerate(stack), key=along)]
     for group in alike:
         shared = None
         for k, panel in group:
@@ -123,10 +120,6 @@ def _draw_stack(figure, place, stack, width: float) -> None:
             if k != group[-1][0]:
                 ax.set_xlabel("")
                 ax.tick_params(labelbottom=False, which="both")
-
-
-def _along(panel):
-    return (panel.x.quantity, panel.x.label, panel.x.scale, tuple(panel.x.words), panel.polar, bool(panel.series))
 
 
 # --- one panel -------------------------------------------------------------------------------------------

@@ -370,7 +370,7 @@ def _again(run, solver: str, plan: Plan, outcome, found: dict, tries: list) -> P
         return None
     if plan.method == "expm" or plan.last or outcome.counts.steps > LONG:
         return None
-    measured = _measured_tries(tries)
+    measured = [before for before in tries if before[2]["solver"] is not None]
     # One sharper run may err as much as the one before by chance, in one step of it; a second does not.
     most = 1 if found["solver"] > WHOLE else 2
     stuck = len(measured) >= most and found["solver"] > HELPED * measured[-most][2]["solver"]
@@ -385,10 +385,8 @@ def _again(run, solver: str, plan: Plan, outcome, found: dict, tries: list) -> P
     other = _other_method(run, solver, plan, tries)
     if other and not hopeless:
         return _by_other(run, plan, other, why)
-    best = min(measured, key=lambda before: before[2]["solver"], default=None)
-    if best and _helped(best[2], found):
-        return _best_again(best, why)
-    return None
+    best = _best_of(tries)
+    return _again_as(best, why) if best and _helped(best[2], found) else None
 
 
 def _helped(found: dict, before: dict) -> bool:
@@ -410,25 +408,24 @@ def _by_other(run, plan: Plan, method: str, why: str) -> Plan:
     return replace(plan, method=method, tolerance=tolerance, why=f"{why}; by {method}")
 
 
-def _measured_tries(tries: list) -> list:
-    """Those of `tries` that did not give up."""
-    return [before for before in tries if before[2]["solver"] is not None]
-
-
 def _plan_after_failure(run, solver: str, plan: Plan, outcome, tries: list) -> Plan | None:
     """What to try where a sharper `plan` gave up: the other method, else the best of those before."""
     why = f"{plan.why}; at tolerance {outcome.tolerance:.1e} {plan.method} gave up"
     other = _other_method(run, solver, plan, tries)
     if other and (other in COMPILED or outcome.counts.steps <= SLOW):
         return _by_other(run, plan, other, why)
-    best = min(_measured_tries(tries), key=lambda before: before[2]["solver"], default=None)
-    return best and _best_again(best, why)
+    best = _best_of(tries)
+    return best and _again_as(best, why)
 
 
-def _best_again(best: tuple, why: str) -> Plan:
+def _best_of(tries: list) -> tuple | None:
+    """That of `tries` that erred least; None if all gave up."""
+    return min((t for t in tries if t[2]["solver"] is not None), key=lambda before: before[2]["solver"], default=None)
+
+
+def _again_as(best: tuple, why: str) -> Plan:
     """The best of those before, for good."""
-    plan, tolerance, _ = best
-    return replace(plan, tolerance=tolerance, why=f"{why}; back to the best of these", last=True)
+    return replace(best[0], tolerance=best[1], why=f"{why}; back to the best of these", last=True)
 
 
 def judgement(found: dict, outcome, tries: list):

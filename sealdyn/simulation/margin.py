@@ -3,13 +3,16 @@
 import math
 from collections.abc import Callable
 
+import numpy as np
 from scipy.optimize import brentq
 
 from ..dynamics import modes
-from ..dynamics.interface import flow_at_rest, rest_state
+from ..dynamics.imposed_motion import rest_state
+from ..dynamics.interface import flow_at_rest, opening_parts
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
 from ..faces.geometry import CONTACT_TORQUE, FLOW_INNER, INNER_PRESSURE, OUTER_PRESSURE, SPIN_DIFFERENCE, TORQUE, TOUCH
+from ..scene import variants
 from ..scene.patterns import waves_of
 from ..scene.rings import SMALL_TILT
 from .plausibility import room_to_open
@@ -17,8 +20,60 @@ from .stability import found_alone
 
 # What ends the growth of the forcing: touch, small tilts, or one of those of `room_to_open`.
 TOUCHED, TILTED = "touch", "small tilts"
-# Of the value at which something ends, relative.
-LOCATED = 1e-9
+# Of the value at which something ends, relative; beyond the largest (SI) linear theory is not asked.
+LOCATED, LARGEST = 1e-9, 1e9
+
+
+class NoOnset(ValueError):
+    """Linear theory sees no value of a key at which the gap first closes."""
+
+
+def largest_tilt(motion) -> float:
+    """Largest tilt (rad) of one harmonic motion, complex amplitudes (3,) of (z, tilt_x, tilt_y)."""
+    return float(0.5 * (abs(motion[1] + 1j * motion[2]) + abs(motion[1] - 1j * motion[2])))
+
+
+def tilt_bound(answers) -> float:
+    """Bound on the tilt (rad) of any part in a linear steady state, by its amplitudes: of rings, of what carries them
+    and of their own misalignments.  `answers` pairs each Harmonic with its response (3 rings,)."""
+    parts = [[h.carrier * (h.ring == k) for h, _ in answers] for k in (0, 1)]
+    parts += [[h.own * (h.ring == k) for h, _ in answers] for k in (0, 1)]
+    floating = len(answers[0][1]) // 3 if answers else 0
+    parts += [[answer[3 * k : 3 * k + 3] for _, answer in answers] for k in range(floating)]
+    return max((sum(map(largest_tilt, part)) for part in parts), default=0.0)
+
+
+def steady_extremes(linear: modes.LinearScene, answers, period: float | None) -> tuple[float, float, float]:
+    """Largest and smallest relative misalignment (rad) and largest axial closing (m) of a linear steady state.
+
+    `answers` pairs each Harmonic with its response.  With a common `period` (s) the motion is followed over it;
+    without one the amplitudes are added: an upper bound, and 0 for the smallest.
+    """
+    relative = [(h.frequency, linear.relative(h, a)) for h, a in answers]
+    if not relative:
+        return 0.0, 0.0, 0.0
+    if period is None:
+        return sum(largest_tilt(r) for _, r in relative), 0.0, float(sum(abs(r[0]) for _, r in relative))
+
+    frequencies, amplitudes = np.array([w for w, _ in relative]), np.array([r for _, r in relative])
+
+    def measures(t):
+        """Minus the squared tilt, the squared tilt and the axial motion at times (m,): what is made small."""
+        x = (np.exp(1j * np.multiply.outer(t, frequencies)) @ amplitudes).real
+        tilt = x[:, 1] ** 2 + x[:, 2] ** 2
+        return np.array([-tilt, tilt, x[:, 0]])
+
+    turns = np.max(np.abs(frequencies)) * period / (2 * np.pi)
+    t = np.linspace(0.0, period, 256 * max(1, round(turns)) + 1)
+    at, step, each, grid = t[np.argmin(measures(t), axis=1)], t[1] - t[0], np.arange(3), np.linspace(-1, 1, 41)
+    # Smooth extrema: close in by ever finer grids.
+    for _ in range(6):
+        near = at[:, None] + step * grid
+        found = measures(near.ravel()).reshape(3, 3, 41)[each, each]
+        at = near[each, np.argmin(found, axis=1)]
+        step /= 15
+    most, least, axial = measures(at)[each, each]
+    return float(np.sqrt(-most)), float(np.sqrt(least)), max(0.0, -float(axial))
 
 
 def state_at_rest(model, at):
@@ -53,7 +108,7 @@ def contact_margin(model, at, linear, tilt, answers) -> tuple[float, str | None]
     if tilt is None or modes.verdict(linear.modes()) != "stable":
         return math.nan, None
     most, _, closing, _ = tilt
-    ends, tilted = [(math.inf, None)], modes.tilt_bound(answers())
+    ends, tilted = [(math.inf, None)], tilt_bound(answers())
     # Without it the margin is that of touch; that it is missing is told beside it.
     leakage = found_alone([], "leakage", lambda: aligned_flow(model, at)[0]) or math.nan
     for gap, radius in ((inner, face[0]), (outer, face[1])):
@@ -74,7 +129,7 @@ def limit_of_forcing(model_of: Callable[[float], Model], most: float) -> dict | 
         model = model_of(value)
         linear, period = model.linear_scene(), RunState(model, 1.0).period()
         answers = linear.answers(model.segment().harmonics())
-        tilt = (*modes.steady_extremes(linear, answers, period), period)
+        tilt = (*steady_extremes(linear, answers, period), period)
         return contact_margin(model, model.start, linear, tilt, lambda: answers)
 
     def beyond(value):
@@ -86,3 +141,73 @@ def limit_of_forcing(model_of: Callable[[float], Model], most: float) -> dict | 
         return None
     value = float(brentq(beyond, 0.0, most, rtol=LOCATED))
     return {"value": value, "by": found(value)[1]}
+
+
+def touching_when_aligned(scene, rough: float) -> dict | None:
+    """Where rough faces, whose asperities meet at the film thickness `rough` (m), touch without any forcing: radius (m)
+    and what asperities carry (N); None if they do not."""
+    if not rough:
+        return None
+    scene = variants.frozen_at_start(scene)
+    model = Model(scene)
+    scene, film = model.scene, model.scene.film
+    thinnest, radius = min((h, r) for r, h in model.aligned_gaps())
+    if thinnest >= rough:
+        return None
+    carried = opening_parts(scene)(model.clearance, film.inner_pressure, film.outer_pressure)
+    return {"radius": float(radius), "touch": rough, "clearance": model.clearance, "contact_force": float(carried[1]),
+            "closing_force": model.closing_force()}  # fmt: skip
+
+
+def times_own(scene, key: str, value: float) -> float | None:
+    """The value of a key over the scene's own; None where that is zero, or no number."""
+    own = variants.part(variants.frozen_at_start(scene), key)
+    return abs(value / own) if isinstance(own, int | float) and own else None
+
+
+def linear_onset(scene, key: str, rough: float = 0.0) -> tuple[float, float]:
+    """Value of the key at which the linear steady state closes the gap down to `rough` (m), and the radius (m) where it
+    does.  Raises NoOnset if the linear response does not depend on the key, or touches at any of its values."""
+
+    def excess(value):
+        model = Model(scene(value), 1e-6)
+        film, radius = linear_film(model)
+        return (film - rough) / model.clearance, radius
+
+    if excess(0.0)[0] <= 0.0:
+        raise NoOnset(f"linear theory touches without any {key}")
+    high = 1e-6
+    while excess(high)[0] > 0:
+        high *= 2
+        if high > LARGEST:
+            raise NoOnset(f"linear theory does not touch at any {key}: it does not move the gap")
+    value = brentq(lambda v: excess(v)[0], 0.0, high, xtol=1e-16, rtol=1e-13)
+    return float(value), float(excess(value)[1])
+
+
+def linear_film(model) -> tuple[float, float]:
+    """Smallest film thickness (m) of the linear steady state, negative beyond touch, and its radius (m)."""
+    linear = model.linear_scene()
+    answers = linear.answers(model.segment().harmonics())
+    most, _, closing = steady_extremes(linear, answers, RunState(model, 1.0).period())
+    coning = model.face[3] + model.coning_change()
+    inner, outer = model.clearance, model.clearance + coning * (model.face[1] - model.face[0])
+    inner_left = inner - closing - model.face[0] * most
+    outer_left = outer - closing - model.face[1] * most
+    return float(min(inner_left, outer_left)), float(model.face[0 if inner_left <= outer_left else 1])
+
+
+def linear_films(scene, key: str, rough: float, own) -> dict:
+    """Of a seal that linear theory never sees touch: the clearance (m), and `linear`, the films (m) that it sees over
+    the key, to ten times the value of the scene `own`, or 10 mrad where it has none."""
+    value = variants.part(variants.frozen_at_start(own), key)
+    value = abs(value) if isinstance(value, int | float) and value else None
+    forcing = np.linspace(0.0, 10.0 * value if value else 1e-2, 11).tolist()
+    films = [linear_film(Model(scene(v), 1e-6))[0] for v in forcing]
+    if films[0] <= rough:
+        # Nothing to see: it touches unforced.
+        return {}
+    return {
+        "clearance": Model(scene(0.0), 1e-6).clearance,
+        "linear": {"forcing": forcing, "h_min": films, "own": value},
+    }

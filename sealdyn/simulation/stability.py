@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..closed_form import fmr_critical_speed, fms_critical_speed
 from ..dynamics import modes, stability_thresholds
 from ..dynamics.intervals import constant_and_slope
 from ..dynamics.linearisation import moves_with_speed, whirl_over_speed
@@ -12,6 +13,7 @@ from ..dynamics.stability_thresholds import neutral_speeds
 from ..scene.patterns import grooves_of, waves_of
 from ..scene.rings import ROTOR, STATOR
 from ..scene.scene import SceneError
+from ..scene.variants import uneven_supports
 
 # Speed (m/s) of the outer edge of a face beyond which there is none: rings burst at some hundreds.
 FASTEST = 1000.0
@@ -202,3 +204,36 @@ def natural_frequency(model, interval=None) -> float:
         sizes = np.array([abs(mode.value) for mode in model.linear_scene(interval).modes() if mode.kind == "tilt"])
     sizes = sizes[sizes > 0.0]
     return float(np.exp(np.mean(np.log(sizes)))) if len(sizes) else 0.0
+
+
+def by_formula(model) -> tuple[float | None, str]:
+    """Closed form fed with the film's own coefficients (rad/s or None), and why there is none."""
+    scene = model.scene
+    if model.interface.stores:
+        return None, "a film that stores: no published formula"
+    if moves_with_speed(model.given):
+        return None, "a gap that moves with the speed: no published formula"
+    if model.unknowns.floats[STATOR] and model.unknowns.floats[ROTOR]:
+        return None, "both rings float: no published formula"
+    if scene.stator.speed != 0.0:
+        return None, "the stator turns: no published formula"
+    if uneven_supports(scene):
+        return None, "a support with two tilt stiffnesses: no published formula"
+    fmr = model.unknowns.floats[ROTOR]
+    formula, ring = (fmr_critical_speed, scene.rotor) if fmr else (fms_critical_speed, scene.stator)
+    if ring.transverse_inertia == 0.0:
+        return None, "a ring without inertia has no threshold"
+    stiffness, damping = ring.support.tilt()
+    film_k, film_d = model.film_matrices()
+    try:
+        speed = formula(
+            transverse_inertia=ring.transverse_inertia,
+            polar_inertia=ring.polar_inertia,
+            support_stiffness=stiffness,
+            support_damping=damping,
+            film_stiffness=float(film_k[1, 1]),
+            film_damping=float(film_d[1, 1]),
+        )
+    except ValueError as error:
+        return None, str(error)
+    return speed, "" if speed is not None else f"{'FMR' if fmr else 'FMS'}: stable at every speed"

@@ -10,7 +10,6 @@ from ..dynamics import modes
 from ..dynamics.equilibrium import resolved_matrices
 from ..dynamics.extrema import H_LEG, H_RADIUS, H_TAU, H_THETA, LEAST, MOST, H
 from ..dynamics.intervals import constant_and_slope
-from ..dynamics.modes import steady_extremes
 from ..dynamics.run_state import Caution, Concern
 from ..faces.geometry import TOUCH
 from ..numerics.piecewise_linear import PiecewiseLinear
@@ -20,7 +19,7 @@ from ..scene.rings import RING_NAMES, ROTOR, STATOR
 from ..scene.variants import uneven_supports
 from ..solvers.contract import Status
 from ..solvers.energy_audit import missing_energy
-from .margin import aligned_flow, contact_margin, state_at_rest
+from .margin import aligned_flow, contact_margin, state_at_rest, steady_extremes
 from .plausibility import cautions, unit_warnings
 from .stability import found_alone, no_stability, stability
 

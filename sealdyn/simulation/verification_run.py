@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..dynamics.interface import rest_state
+from ..dynamics.imposed_motion import rest_state
 from ..dynamics.intervals import constant_and_slope
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState

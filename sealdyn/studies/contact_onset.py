@@ -11,10 +11,7 @@ from scipy.optimize import brentq
 
 from ..analysis.shooting import Follower, NoOrbit
 from ..answers import Answer, Axis, Level, Panel, Series, Table
-from ..dynamics.interface import opening_parts
 from ..dynamics.model import Model
-from ..dynamics.modes import steady_extremes
-from ..dynamics.run_state import RunState
 from ..dynamics.warm_state import at_work
 from ..numerics.piecewise_linear import points
 from ..quantities import in_words
@@ -26,7 +23,7 @@ from ..scene.checks import unused
 from ..scene.contact import touch_height
 from ..scene.rings import SMALL_TILT
 from ..scene.scene import SceneError
-from ..simulation.margin import limit_of_forcing
+from ..simulation.margin import NoOnset, limit_of_forcing, linear_films, linear_onset, times_own, touching_when_aligned
 from ..simulation.simulate import simulate_in_memory
 from ..status import Status
 from . import Info
@@ -47,8 +44,6 @@ INFO = Info(
     },
     along={"allowed/path": ("tried",), "path": ("forcing",), "linear": ("forcing",), "curve": ("value",)},
 )  # fmt: skip
-# Beyond this value of a key, SI, linear theory is not asked any more.
-LARGEST = 1e9
 # What may rise, by its name among the means of a short run, and in words.
 LIMITS = {"pressure": "contact_pressure", "load": "contact_force", "wear": "wear_rate", "friction": "friction_power"}
 AT_REST = {"pressure": "Pa", "load": "N", "wear": "m/s", "friction": "W"}
@@ -158,7 +153,7 @@ def onset(scenario, point: dict) -> dict:
 
     try:
         formula, touching = linear_onset(scene, key, rough)
-    except NoOrbit as reason:
+    except NoOnset as reason:
         return {"key": key, "margin": point["margin"], "touch": rough, "failed": str(reason),
                 **linear_films(scene, key, rough, scenario.scene)}  # fmt: skip
     result = {"key": key, "formula": formula, "linear_radius": touching, "margin": point["margin"], "touch": rough,
@@ -279,76 +274,6 @@ def allowed(scenario, point: dict) -> dict:
     except (NoAverage, SceneError) as reason:
         told["failed"] = str(reason)
     return told
-
-
-def touching_when_aligned(scene, rough: float) -> dict | None:
-    """Where rough faces, whose asperities meet at the film thickness `rough` (m), touch without any forcing: radius (m)
-    and what asperities carry (N); None if they do not."""
-    if not rough:
-        return None
-    scene = variants.frozen_at_start(scene)
-    model = Model(scene)
-    scene, film = model.scene, model.scene.film
-    thinnest, radius = min((h, r) for r, h in model.aligned_gaps())
-    if thinnest >= rough:
-        return None
-    carried = opening_parts(scene)(model.clearance, film.inner_pressure, film.outer_pressure)
-    return {"radius": float(radius), "touch": rough, "clearance": model.clearance, "contact_force": float(carried[1]),
-            "closing_force": model.closing_force()}  # fmt: skip
-
-
-def times_own(scene, key: str, value: float) -> float | None:
-    """The value of a key over the scene's own; None where that is zero, or no number."""
-    own = variants.part(variants.frozen_at_start(scene), key)
-    return abs(value / own) if isinstance(own, int | float) and own else None
-
-
-def linear_onset(scene, key: str, rough: float = 0.0) -> tuple[float, float]:
-    """Value of the key at which the linear steady state closes the gap down to `rough` (m), and the radius (m) where it
-    does.  Raises NoOrbit if the linear response does not depend on the key, or touches at any of its values."""
-
-    def excess(value):
-        model = Model(scene(value), 1e-6)
-        film, radius = linear_film(model)
-        return (film - rough) / model.clearance, radius
-
-    if excess(0.0)[0] <= 0.0:
-        raise NoOrbit(f"linear theory touches without any {key}")
-    high = 1e-6
-    while excess(high)[0] > 0:
-        high *= 2
-        if high > LARGEST:
-            raise NoOrbit(f"linear theory does not touch at any {key}: it does not move the gap")
-    value = brentq(lambda v: excess(v)[0], 0.0, high, xtol=1e-16, rtol=1e-13)
-    return float(value), float(excess(value)[1])
-
-
-def linear_film(model) -> tuple[float, float]:
-    """Smallest film thickness (m) of the linear steady state, negative beyond touch, and its radius (m)."""
-    linear = model.linear_scene()
-    answers = linear.answers(model.segment().harmonics())
-    most, _, closing = steady_extremes(linear, answers, RunState(model, 1.0).period())
-    coning = model.face[3] + model.coning_change()
-    inner, outer = model.clearance, model.clearance + coning * (model.face[1] - model.face[0])
-    inner_left = inner - closing - model.face[0] * most
-    outer_left = outer - closing - model.face[1] * most
-    return float(min(inner_left, outer_left)), float(model.face[0 if inner_left <= outer_left else 1])
-
-
-def linear_films(scene, key: str, rough: float, own) -> dict:
-    """Of a seal that linear theory never sees touch: the clearance (m), and `linear`, the films (m) that it sees over
-    the key, to ten times the value of the scene `own`, or 10 mrad where it has none."""
-    value = variants.part(variants.frozen_at_start(own), key)
-    value = abs(value) if isinstance(value, int | float) and value else None
-    forcing = np.linspace(0.0, 10.0 * value if value else 1e-2, 11).tolist()
-    films = [linear_film(Model(scene(v), 1e-6))[0] for v in forcing]
-    if films[0] <= rough:
-        # Nothing to see: it touches unforced.
-        return {}
-    return {
-        "clearance": Model(scene(0.0), 1e-6).clearance,
-        "linear": {"forcing": forcing, "h_min": films, "own": value},
-    }
 
 
 # --- what is shown -----------------------------------------------------------------------------------------

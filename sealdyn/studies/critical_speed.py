@@ -7,26 +7,31 @@ agree.
 
 from dataclasses import dataclass
 from functools import partial
-from itertools import pairwise
 from typing import Literal
 
 import numpy as np
 
 from ..analysis.rotating_wave import branch, compared, contact_tilt_aligned, family_columns, free_model, kind_of
-from ..analysis.whirl_in_time import bounded_or_not, growth_rate, linear_growth, tipping_disturbance
+from ..analysis.whirl_in_time import (
+    between,
+    bounded_or_not,
+    growth_rate,
+    line_crossing,
+    linear_growth,
+    tipping_disturbance,
+)
 from ..answers import Answer, Axis, Level, Panel, Series, Table
-from ..closed_form import fmr_critical_speed, fms_critical_speed
 from ..dynamics.linearisation import moves_with_speed
 from ..dynamics.run_state import RunState
 from ..numerics.piecewise_linear import initially
 from ..quantities import in_words
 from ..scene.patterns import grooves_of
-from ..scene.rings import ROTOR, STATOR
 from ..scene.scene import Closing
 from ..scene.variants import frozen_at_start, uneven_supports, with_values
 from ..simulation.selection import choose_method
 from ..simulation.stability import (
     FASTEST,
+    by_formula,
     critical_speed,
     critical_speed_undamped,
     held_speeds,
@@ -125,39 +130,6 @@ def over_grooves(scene, tools) -> dict:
     }  # fmt: skip
 
 
-def by_formula(model) -> tuple[float | None, str]:
-    """Closed form fed with the film's own coefficients (rad/s or None), and why there is none."""
-    scene = model.scene
-    if model.interface.stores:
-        return None, "a film that stores: no published formula"
-    if moves_with_speed(model.given):
-        return None, "a gap that moves with the speed: no published formula"
-    if model.unknowns.floats[STATOR] and model.unknowns.floats[ROTOR]:
-        return None, "both rings float: no published formula"
-    if scene.stator.speed != 0.0:
-        return None, "the stator turns: no published formula"
-    if uneven_supports(scene):
-        return None, "a support with two tilt stiffnesses: no published formula"
-    fmr = model.unknowns.floats[ROTOR]
-    formula, ring = (fmr_critical_speed, scene.rotor) if fmr else (fms_critical_speed, scene.stator)
-    if ring.transverse_inertia == 0.0:
-        return None, "a ring without inertia has no threshold"
-    stiffness, damping = ring.support.tilt()
-    film_k, film_d = model.film_matrices()
-    try:
-        speed = formula(
-            transverse_inertia=ring.transverse_inertia,
-            polar_inertia=ring.polar_inertia,
-            support_stiffness=stiffness,
-            support_damping=damping,
-            film_stiffness=float(film_k[1, 1]),
-            film_damping=float(film_d[1, 1]),
-        )
-    except ValueError as error:
-        return None, str(error)
-    return speed, "" if speed is not None else f"{'FMR' if fmr else 'FMS'}: stable at every speed"
-
-
 def growth(scene, point: dict) -> dict:
     """Growth rate of a small disturbance at one speed, by eigenvalues and in the time domain."""
     return growth_rate(scene, point["speed"], point["turns"], point["method"], point["accuracy"])
@@ -227,22 +199,6 @@ def _within_held(model, tried: list[float]) -> list[float]:
 def _unmeasured(rows) -> str:
     """Why no row has a growth rate; "" if one has."""
     return rows[0]["failed"] if all("failed" in row for row in rows) else ""
-
-
-def between(rows, speeds):
-    """The neighbouring ((speed, row), (speed, row)) between which decay turns into growth, both decided; or None."""
-    good = [(w, row) for w, row in zip(speeds, rows, strict=True) if "failed" not in row and row["decided"]]
-    for a, b in pairwise(good):
-        if a[1]["rate"] < 0 < b[1]["rate"]:
-            return a, b
-    return None
-
-
-def line_crossing(a, b) -> tuple[float, float]:
-    """Speed (rad/s) where the line between two rates crosses zero, and its uncertainty: theirs over the slope."""
-    (low, p), (high, q) = a, b
-    slope = (q["rate"] - p["rate"]) / (high - low)
-    return float(low - p["rate"] / slope), float(max(p["uncertainty"], q["uncertainty"]) / slope)
 
 
 def disagreements(growth) -> list[bool]:

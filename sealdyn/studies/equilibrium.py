@@ -18,7 +18,8 @@ from ..dynamics.equilibrium import (
     settle,
     support_stiffness,
 )
-from ..dynamics.interface import Interface, flow_at_rest, opening_law, opening_parts, rest_state
+from ..dynamics.imposed_motion import rest_state
+from ..dynamics.interface import Interface, flow_at_rest, opening_law, opening_parts
 from ..dynamics.warm_state import at_work, unheated, warming
 from ..faces.geometry import CAVITATED, CONTACT_PRESSURE, CONTACT_TORQUE, FLOW_INNER, SPIN_DIFFERENCE, TORQUE, WEAR
 from ..numerics.piecewise_linear import initially

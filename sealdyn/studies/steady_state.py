@@ -10,7 +10,6 @@ from ..analysis.shooting import ForcedWave, NoOrbit, Shooter
 from ..answers import Answer, Axis, Level, Panel, Series, Table, table_of
 from ..dynamics import modes
 from ..dynamics.model import Model
-from ..dynamics.modes import steady_extremes
 from ..dynamics.run_state import RunState
 from ..dynamics.signals import signals
 from ..faces.film_thickness import h_min
@@ -18,6 +17,7 @@ from ..numerics.piecewise_linear import initially
 from ..quantities import in_words
 from ..scenario.errors import ScenarioError
 from ..scenario.reader import with_values
+from ..simulation.margin import steady_extremes
 from ..simulation.selection import choose_method
 from ..simulation.stability import critical_speed
 from ..solvers.contract import Recorder, Status

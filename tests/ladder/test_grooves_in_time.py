@@ -14,7 +14,8 @@ from scipy.sparse.linalg import splu
 
 from sealdyn.analysis.shooting import ForcedWave
 from sealdyn.dynamics.condensation import FilmDerivatives
-from sealdyn.dynamics.interface import Interface, rest_state
+from sealdyn.dynamics.imposed_motion import rest_state
+from sealdyn.dynamics.interface import Interface
 from sealdyn.dynamics.model import Model
 from sealdyn.faces.geometry import (
     DZ,

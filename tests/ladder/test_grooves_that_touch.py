@@ -11,7 +11,8 @@ from scenes import run
 from scipy.optimize import brentq
 
 from sealdyn import read_scenario, run_study
-from sealdyn.dynamics.interface import Interface, flow_at_rest, opening_parts, rest_state
+from sealdyn.dynamics.imposed_motion import rest_state
+from sealdyn.dynamics.interface import Interface, flow_at_rest, opening_parts
 from sealdyn.faces import contact
 from sealdyn.faces.geometry import (
     CONTACT_AREA,

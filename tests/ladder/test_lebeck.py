@@ -10,7 +10,8 @@ from scipy.linalg import eig
 
 from sealdyn.analysis.sources import lebeck_1979, lebeck_1979_plateaus
 from sealdyn.dynamics.film_modes import even
-from sealdyn.dynamics.interface import Interface, flow_at_rest, opening_parts, rest_state, with_cells
+from sealdyn.dynamics.imposed_motion import rest_state
+from sealdyn.dynamics.interface import Interface, flow_at_rest, opening_parts, with_cells
 from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.run_state import RunState
 from sealdyn.faces.geometry import CONTACT_FORCE, CONTACT_TORQUE, FLOW_INNER, FLOW_OUTER, FORCE, TORQUE

@@ -16,13 +16,13 @@ from sealdyn.report.panels import sheet_of
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import parse_scenario, with_values
 from sealdyn.scene import variants
-from sealdyn.simulation.margin import aligned_flow, limit_of_forcing
+from sealdyn.simulation.margin import aligned_flow, limit_of_forcing, linear_films, linear_onset
 from sealdyn.simulation.plausibility import FAST, leakage_numbers
 from sealdyn.solvers.contract import Recorder
 from sealdyn.solvers.integrate import solve
 from sealdyn.studies import contact_onset
 from sealdyn.studies._runner import run_study
-from sealdyn.studies.contact_onset import Settings, linear_onset, onset
+from sealdyn.studies.contact_onset import Settings, onset
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 POINT = {"margin": 1e-3, "tolerance": 1e-5, "most": 1e3, "set": {}, "floor": False}
@@ -117,7 +117,7 @@ def test_a_seal_that_never_touches_has_the_films_of_linear_theory():
     def scene(value):
         return with_values(scenario, {"rotor.runout": value, "run.start": "steady"}).scene
 
-    answer = contact_onset.linear_films(scene, "rotor.runout", 0.0, scenario.scene)
+    answer = linear_films(scene, "rotor.runout", 0.0, scenario.scene)
     forcing, h_min = np.array(answer["linear"]["forcing"]), np.array(answer["linear"]["h_min"])
     assert answer["linear"]["own"] == 1e-6 and forcing[0] == 0.0 and forcing[-1] == pytest.approx(1e-5)
     assert h_min[0] == pytest.approx(answer["clearance"], rel=1e-12) and np.all(np.diff(h_min) < 0)

@@ -11,8 +11,8 @@ import sealdyn
 from sealdyn.analysis.shooting import Shooter
 from sealdyn.archive import read_study
 from sealdyn.dynamics.model import Model
-from sealdyn.dynamics.modes import steady_extremes
 from sealdyn.scenario.reader import parse_scenario
+from sealdyn.simulation.margin import steady_extremes
 from sealdyn.studies import steady_state
 from sealdyn.studies._runner import run_study
 

@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from sealdyn.analysis import radial_rules
 from sealdyn.analysis.design_rules import RULES, findings
 from sealdyn.analysis.seal_figures import Verdict
-from sealdyn.dynamics.interface import flow_at_rest, rest_state
+from sealdyn.dynamics.imposed_motion import rest_state
+from sealdyn.dynamics.interface import flow_at_rest
 from sealdyn.faces.geometry import CONTACT_FORCE
 from sealdyn.scenario import errors
 from sealdyn.scenario.errors import tables

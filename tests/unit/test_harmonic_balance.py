@@ -9,9 +9,11 @@ from scenes import GIVEN, INERTIA, NOTHING, SPEED, SUPPORT, film, ring
 from scenes import of_given_film as run_of
 from scipy.integrate import solve_ivp
 
-from sealdyn.dynamics.modes import Harmonic, common_period, steady_extremes
+from sealdyn.dynamics.intervals import common_period
+from sealdyn.dynamics.modes import Harmonic
 from sealdyn.scene.excitation import AngularVibration, Housing, Shaft, Whirl
 from sealdyn.scene.rings import Rotor, Stator
+from sealdyn.simulation.margin import steady_extremes
 
 K_F, D_F, K_FZ, D_FZ = GIVEN
 K_S, D_S = SUPPORT.tilt()

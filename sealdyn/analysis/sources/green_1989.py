@@ -11,12 +11,12 @@ import numpy as np
 
 from ... import closed_form as cf
 from ...dynamics.model import Model
-from ...dynamics.modes import steady_extremes
 from ...dynamics.run_state import RunState
 from ...scene.excitation import Shaft
 from ...scene.film import Film
 from ...scene.rings import Rotor, Stator, Support
 from ...scene.scene import Initial, RingStart, Scene
+from ...simulation.margin import steady_extremes
 from ...simulation.stability import critical_speed
 from ...solvers.contract import Recorder
 from ...solvers.integrate import solve

@@ -9,7 +9,8 @@ asperities, the outer radius and the speed as units.
 import math
 from dataclasses import dataclass
 
-from ...dynamics.interface import Interface, flow_at_rest, rest_state
+from ...dynamics.imposed_motion import rest_state
+from ...dynamics.interface import Interface, flow_at_rest
 from ...faces.geometry import CONTACT_TORQUE, FLOW_INNER, FORCE, TORQUE
 from ...scene.contact import HALF_HEIGHT, Contact
 from ...scene.excitation import Shaft

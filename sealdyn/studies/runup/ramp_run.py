@@ -17,7 +17,6 @@ from ...dynamics.extrema import H_LEG, H_TAU, MOST, MOST_LEG, MOST_TAU, H
 from ...dynamics.imposed_motion import set_conditions
 from ...dynamics.intervals import constant_and_slope, spins
 from ...dynamics.model import Model
-from ...dynamics.modes import steady_extremes
 from ...dynamics.run_state import RunState
 from ...faces.geometry import (
     COLLAPSE,
@@ -38,6 +37,7 @@ from ...faces.geometry import (
 from ...numerics.piecewise_linear import PiecewiseLinear
 from ...scenario.reader import with_values
 from ...scene import variants
+from ...simulation.margin import steady_extremes
 from ...simulation.selection import prepare_run
 from ...solvers.contract import Status
 from ...solvers.integrate import solve

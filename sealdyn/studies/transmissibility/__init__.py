@@ -256,10 +256,10 @@ def table(seals: dict[str, Arrangement], speed: float, by_formula: bool, rows: l
         roads["formula"][name] = [float(v) for v in seal.formula(speed)] if by_formula else [None] * 3
         row = next((r for r in rows if r["seal"] == name and r["speed"] == speed and "failed" not in r), {})
         roads["time_domain"][name] = [row.get(q) for q in QUANTITIES]
-    for road, both in roads.items():
-        for name, values in both.items():
-            values.append(min(critical_misalignments(seals[name], speed, values).values(), default=None))
-            values.append(_critical_speed(seals[name], road, by_formula))
+        found = {"linear_algebra": seal.critical_speed(), "formula": by_formula and seal.critical_speed_by_formula()}
+        for road, both in roads.items():
+            closing = min(critical_misalignments(seal, speed, both[name]).values(), default=None)
+            both[name] += [closing, found.get(road) or None]
     kinds = [*((n, "1") for n in NAMES.values()), ("critical_misalignment", "C/r_o"), ("critical_speed", "rad/s")]
 
     def best(quantity, name):
@@ -290,21 +290,6 @@ def critical_misalignments(seal: Arrangement, speed: float, values) -> dict[str,
         if np.isfinite(size):
             found[key] = size
     return found
-
-
-def _critical_speed(seal: Arrangement, road: str, by_formula: bool) -> float | None:
-    if road == "time_domain" or (road == "formula" and not by_formula):
-        return None
-    if road == "linear_algebra":
-        return seal.critical_speed()
-    if seal.name == "fmsr" or moves_with_speed(seal.scene):
-        return None
-    numbers = seal.tilt_numbers(1.0)
-    numbers.pop("speed")
-    try:
-        return (cf.fmr_critical_speed if seal.name == "fmr" else cf.fms_critical_speed)(**numbers)
-    except ValueError:
-        return None
 
 
 # --- what is shown ------------------------------------------------------------------------------------

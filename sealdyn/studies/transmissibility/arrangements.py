@@ -11,6 +11,7 @@ from ... import closed_form as cf
 from ...dynamics import modes
 from ...dynamics.equilibrium import axial_shift
 from ...dynamics.extrema import MOST
+from ...dynamics.linearisation import moves_with_speed
 from ...dynamics.model import Model
 from ...dynamics.run_state import RunState
 from ...dynamics.signals import signals
@@ -103,6 +104,17 @@ class Arrangement:
     def growth(self, speed: float) -> float:
         """Growth rate (1/s) of the least damped tilt mode; 0 within its uncertainty."""
         return modes.growth([mode for mode in self.linear(speed).modes() if mode.kind == "tilt"])
+
+    def critical_speed_by_formula(self) -> float | None:
+        """Closed form of the critical speed (rad/s) of one flexible ring whose gap does not move with the speed."""
+        if self.name == "fmsr" or moves_with_speed(self.scene):
+            return None
+        numbers = self.tilt_numbers(1.0)
+        numbers.pop("speed")
+        try:
+            return (cf.fmr_critical_speed if self.name == "fmr" else cf.fms_critical_speed)(**numbers)
+        except ValueError:
+            return None
 
     def critical_speed(self) -> float | None:
         """The seal's critical speed (rad/s)."""

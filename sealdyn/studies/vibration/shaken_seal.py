@@ -19,7 +19,7 @@ from scipy.constants import g
 
 from ...dynamics.extrema import H
 from ...dynamics.model import Model
-from ...dynamics.modes import Harmonic, steady_extremes, verdict
+from ...dynamics.modes import Harmonic, verdict
 from ...dynamics.run_state import RunState
 from ...faces.geometry import DZ, GX, GY
 from ...quantities import in_words
@@ -29,6 +29,7 @@ from ...scene.patterns import waves_of
 from ...scene.rings import STATOR
 from ...scene.scene import Initial, Scene, SceneError
 from ...scene.variants import frozen_at_start, unforced
+from ...simulation.margin import steady_extremes
 from ...simulation.selection import choose_method
 from ...simulation.verification_run import price
 from ...solvers.contract import Cause, Recorder, SolverFailure, Status

@@ -17,7 +17,8 @@ from dataclasses import replace
 import numpy as np
 
 from ...dynamics.equilibrium import crossing
-from ...dynamics.interface import Interface, flow_at_rest, opening_law, prepared, rest_state
+from ...dynamics.imposed_motion import rest_state
+from ...dynamics.interface import Interface, flow_at_rest, opening_law, prepared
 from ...faces import contact
 from ...faces.geometry import (
     CONTACT_AREA,

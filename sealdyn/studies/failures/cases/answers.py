@@ -11,7 +11,6 @@ from ....analysis.sources import lebeck_1979
 from ....analysis.sources.green_1989 import reference_scene
 from ....dynamics.elastic_ring import operating_point, operating_points
 from ....dynamics.model import Model
-from ....dynamics.modes import steady_extremes
 from ....dynamics.run_state import RunState
 from ....films import film_named
 from ....quantities import everyday, in_words
@@ -22,6 +21,7 @@ from ....scene.gas import GasReynolds
 from ....scene.rings import ElasticRing, Stator, Support
 from ....scene.scene import Closing, Initial, RingStart, Scene, SceneError
 from ....simulation.film_error import steady_tilt
+from ....simulation.margin import steady_extremes
 from ....solvers.contract import Recorder, Status
 from ....solvers.integrate import solve
 from . import cruise_dam, integrated, row, run_from

@@ -12,7 +12,8 @@ from scipy.sparse.linalg import splu, spsolve
 from ....analysis.sources import lebeck_1979
 from ....closed_form.zuk_1972 import CRUISE, MIL
 from ....dynamics.condensation import FilmDerivatives, LinearFilm
-from ....dynamics.interface import Interface, rest_state
+from ....dynamics.imposed_motion import rest_state
+from ....dynamics.interface import Interface
 from ....faces.geometry import (
     DZ,
     FLOW_INNER,
