@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from .scenario.templates import example, examples
     from .simulation.batch import simulate_many, sweep
     from .simulation.result import Result
-    from .simulation.run import RunEnded, evaluate, run
+    from .simulation.run import RunEnded, evaluate, list_outputs, run
     from .simulation.simulate import simulate
     from .simulation.stepping import Simulation
     from .studies._runner import Answer, list_studies, run_study, schema, study
@@ -47,6 +47,7 @@ __all__ = [
     "evaluate",
     "example",
     "examples",
+    "list_outputs",
     "list_studies",
     "open_archive",
     "read_scenario",
@@ -72,7 +73,7 @@ _PLACES = {
     "scenario.templates": ("example", "examples"),
     "simulation.batch": ("simulate_many", "sweep"),
     "simulation.result": ("Result",),
-    "simulation.run": ("RunEnded", "evaluate", "run"),
+    "simulation.run": ("RunEnded", "evaluate", "list_outputs", "run"),
     "simulation.simulate": ("simulate",),
     "simulation.stepping": ("Simulation",),
     "studies._runner": ("Answer", "list_studies", "run_study", "schema", "study"),

@@ -120,6 +120,17 @@ class Simulation:
         """What has happened, in the order of time: kind, time (s), value and more, as the events of an archive."""
         return list(self._events)
 
+    def __repr__(self) -> str:
+        state = self.state
+        return f"Simulation {self.name}: {self.method}, t = {self.time:g} s, h_min = {state['h_min']:.4g} m"
+
+    def _repr_html_(self) -> str:
+        from ..report.notebook import html_table
+
+        units, state = self.units, self.state
+        rows = [(name, f"{value:.6g}", units[name]) for name, value in state.items()]
+        return html_table(rows, ("state", "value", "unit"), self.name)
+
     # --- what is done -------------------------------------------------------------------------------
 
     def step(self, duration: float) -> dict[str, float]:

@@ -271,7 +271,7 @@ def _folder(path) -> Results:
     return Results(path)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Answer:
     """What a study leaves: its name, `status` (a value of Status), a sentence, the `verdict` in sentences, the `answer`
     as a dict (as `study --json` prints it, SI), and the path of the archive, or None and its `content` where it was
@@ -300,6 +300,16 @@ class Answer:
         answer, "curve.h_min", along the columns that its study names."""
         info = study_info(self.study)
         return answer_as_dataset(self.answer, info.units, info.along)
+
+    def __repr__(self) -> str:
+        from ..report.notebook import study_repr
+
+        return study_repr(self.study, self.answer)
+
+    def _repr_html_(self) -> str:
+        from ..report.notebook import study_html
+
+        return study_html(self.answer)
 
     def plot(self) -> Figure:
         """Its figure, of matplotlib; `figure.savefig("map.svg")` writes it."""

@@ -92,6 +92,7 @@ def verbs(scenario: sealdyn.Scenario, folder: Path) -> None:
     assert_type(sealdyn.animate(folder / "kept.h5", folder / "moved.png"), Path)
     assert_type(sealdyn.schema(), dict[str, Any])
     assert_type(sealdyn.list_studies(), dict[str, str])
+    assert_type(sealdyn.list_outputs(scenario), dict[str, str])
 
 
 def main(folder: Path) -> None:
