@@ -27,7 +27,8 @@ if TYPE_CHECKING:
     from .simulation.run import RunEnded, evaluate, list_outputs, run
     from .simulation.simulate import simulate
     from .simulation.stepping import Simulation
-    from .studies._runner import Answer, list_studies, run_study, schema, study
+    from .studies._asked import study
+    from .studies._runner import Answer, list_studies, run_study, schema
     from .studies._shaft_table import dyrobes_table, shaft_table
 
 __version__ = "0.1.0"

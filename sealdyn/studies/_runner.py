@@ -334,8 +334,8 @@ def study(
     """Answer a question about a scenario, or that of a TOML file or an archive: `sealdyn.study("sweep", scenario,
     vary="rotor.runout=0:1 mrad:21")`.  Without `out` nothing is left on disk.
 
-    `name` with hyphens or underscores; `settings` those of `[study.NAME]`; `without` "contact" or "secondary-seal";
-    the others as in `run_study`.
+    `name` with hyphens or underscores; `settings` those of `[study.NAME]`, which a type checker knows of the package's
+    own studies; `without` "contact" or "secondary-seal"; the others as in `run_study`.
     Raises ScenarioError for what cannot be studied, ClusterError, ArchiveError.
 
     >>> answer = sealdyn.study("sweep", "fms.toml", vary="rotor.runout=10,20 urad", outputs="h_min.value")
