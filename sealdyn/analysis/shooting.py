@@ -17,7 +17,7 @@ from ..dynamics.imposed_motion import OWN, TURNING
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
 from ..faces.film_thickness import h_min
-from ..faces.geometry import DZ_RATE, GX, GX_RATE, GY, GY_RATE, MEAN_SPIN
+from ..faces.geometry import COLLAPSE, DZ_RATE, GX, GX_RATE, GY, GY_RATE, MEAN_SPIN
 from ..scene.patterns import face_orders
 from ..scene.scene import SceneError
 from ..scene.variants import uneven_supports
@@ -27,8 +27,6 @@ from ..solvers.integrate import solve
 from ..solvers.methods import METHODS
 from .rotating_wave import SPEED_AT, STEP, RotatingWave
 
-# Right-hand sides that the path of orbits may take: three times what the dearest scenario needs.
-MOST_WORK = 1_200_000
 TIGHT = 1e-13
 # Differences of the flow: steps in units of the scales.  The error is the fourth power of the step plus the
 # integrator's tolerance over the step.
@@ -75,7 +73,8 @@ class _Crawls(NoOrbit):
 class Orbit:
     """A periodic steady state: period (s), mechanical unknowns (n,) at its start, monodromy matrix (n, n) in units of
     the scales and its eigenvalues (n,), None where they were not asked for, what Newton left (in units of the scales),
-    periods integrated on the way, and the extremes over the orbit (`Shooter.extremes`)."""
+    periods integrated on the way, the extremes over the orbit (`Shooter.extremes`), and of harmonic balance its
+    `points`, displacements (N, n) over the period."""
 
     period: float
     start: np.ndarray
@@ -84,11 +83,34 @@ class Orbit:
     residual: float
     periods_used: int
     extremes: dict
+    points: np.ndarray | None = None
 
     @property
     def stable(self) -> bool:
         """All multipliers inside the unit circle."""
         return bool(np.max(np.abs(self.multipliers)) < 1.0)
+
+
+def must_be_open(orbit: Orbit) -> Orbit:
+    """The orbit itself.  Raises NoOrbit for one of a film that is closed, which is no motion of the seal."""
+    if orbit.extremes["collapsed"]:
+        share = orbit.extremes["h_min"]["of_clearance"]
+        raise NoOrbit(f"the orbit closes the film ({share:.1g} of the clearance): the forcing is at contact or beyond")
+    return orbit
+
+
+def periodic(scene, accuracy: float, turns: int = 1) -> tuple[Model, float]:
+    """Model of a scene, and its period (s): `turns` times that of the forcing.  Raises NoOrbit if there is none, a ring
+    sticks or the film stores."""
+    probe = RunState(Model(scene, accuracy), 1.0)
+    period = probe.period()
+    if period is None or not probe.model.unknowns.constant:
+        raise NoOrbit("no common period: forcing frequencies are incommensurate, or conditions change with time")
+    if probe.stick_slip:
+        raise NoOrbit("a secondary seal that sticks and slips has no smooth period map: run it in time")
+    if probe.model.interface.stores:
+        raise NoOrbit("a film that stores has more to its period map than the motion of the rings: run it in time")
+    return probe.model, float(turns * period)
 
 
 class Shooter:
@@ -100,18 +122,9 @@ class Shooter:
 
     def __init__(self, scene, accuracy: float = 1e-8, turns: int = 1, tight: float = TIGHT):
         self.scene, self.accuracy, self.tight = scene, accuracy, tight
-        probe = RunState(Model(scene, accuracy), 1.0)
-        period = probe.period()
-        if period is None or not probe.model.unknowns.constant:
-            raise NoOrbit("no common period: forcing frequencies are incommensurate, or conditions change with time")
-        if probe.stick_slip:
-            raise NoOrbit("a secondary seal that sticks and slips has no smooth period map: run it in time")
-        if probe.model.interface.stores:
-            raise NoOrbit("a film that stores has more to its period map than the motion of the rings: run it in time")
-        self.period = float(turns * period)
-        self.model = probe.model
+        self.model, self.period = periodic(scene, accuracy, turns)
         # Nobody asks for the works here, and where next to nothing moves their tolerance is below all rounding.
-        self.model.scales[probe.segment(0).works] = FREE
+        self.model.scales[self.model.unknowns.works] = FREE
         # SciPy's Runge-Kutta keeps 1e-13 over a period; a massless or stiff ring needs an implicit method.
         method, _ = choose_method(RunState(self.model, self.period))
         self.method = {"adams": "dop853"}.get(method, method)
@@ -196,9 +209,8 @@ class Shooter:
             raise NoOrbit(f"Newton did not converge in {most} steps (defect {size:.1e} of the scales)")
         if monodromy is None:
             monodromy = self.monodromy(x)
-        return Orbit(
-            self.period, x, monodromy, np.linalg.eigvals(monodromy), size, self.flows - begun, self.extremes(x)
-        )
+        values = np.linalg.eigvals(monodromy)
+        return Orbit(self.period, x, monodromy, values, size, self.flows - begun, self.extremes(x))
 
     def multiplier(self, orbit: Orbit) -> float:
         """Largest modulus of the Floquet multipliers of an orbit, by a monodromy of its own."""
@@ -307,7 +319,7 @@ class ForcedWave:
             x, before, last = x - step, last, float(np.max(np.abs(step)))
             # To rounding, of which a stiff film leaves more.
             if last < POINT or (last < 1e3 * POINT and last > 0.3 * before):
-                return self._orbit(x * self.scales, last)
+                return must_be_open(self._orbit(x * self.scales, last))
         raise NoOrbit("no point of the forcing's frame is found where the rings are in balance")
 
     def _orbit(self, q, residual) -> Orbit:
@@ -317,7 +329,8 @@ class ForcedWave:
         tilt = float(np.hypot(s[GX], s[GY]))
         least = {"value": low, "time": 0.0, "theta": theta, "radius": radius}
         least["of_clearance"] = low / self.model.clearance
-        extremes = {"h_min": least, "relative_misalignment": {"max": tilt, "min": tilt}, "collapsed": False}
+        closed = bool(low <= self.model.face[COLLAPSE])
+        extremes = {"h_min": least, "relative_misalignment": {"max": tilt, "min": tilt}, "collapsed": closed}
         start, period = y[: self.model.unknowns.n_mechanical], RunState(self.model, 1.0).period()
         return Orbit(period, start, None, None, residual, 0, extremes)
 
@@ -332,118 +345,3 @@ class ForcedWave:
             return None
         values = self.wave.disturbances(self.state(orbit.start[: self.wave.n]), self.speed, self.segment.p[SPEED_AT])
         return float(np.exp(np.max(values.real) * orbit.period))
-
-
-class Follower:
-    """Follows the periodic orbit as the forcing grows, until its thinnest film is the margin, or `touch` (m)."""
-
-    def __init__(self, scene, margin: float, accuracy: float, monodromy=None, start=None, touch: float = 0.0):
-        self.scene, self.margin, self.accuracy, self.touch = scene, margin, accuracy, touch
-        self.monodromy, self.start, self.path = monodromy, start, []
-        self.known, self.work = [], 0
-
-    def told(self) -> dict:
-        """The path of orbits followed, and their clearance (m), if there is any."""
-        names = ("forcing", "h_min", "tilt", "axial")
-        path = {name: [p[name] for p in self.path] for name in names}
-        return {"path": path, "clearance": self.path[-1]["clearance"]} if self.path else {}
-
-    def excess(self, value: float) -> float:
-        """h_min / clearance - margin of the orbit at one forcing, guessed from its neighbours."""
-        scene = self.scene(value)
-        try:
-            shooter = ForcedWave(scene, self.accuracy)
-            orbit = shooter.find(self._guess(value, shooter))
-        except NotOneSpeed:
-            shooter, orbit = self._shot(scene, value)
-        self.orbit, self.finder, self.start = orbit, shooter, orbit.start
-        self.known = [*[k for k in self.known if k[0] != value][-3:], (value, orbit.start, shooter.guess())]
-        low, model = orbit.extremes["h_min"], shooter.model
-        tilt, axial = orbit.extremes["relative_misalignment"]["max"], self._mean_axial(model, orbit)
-        self.path.append({"forcing": value, "h_min": low["value"], "radius": low["radius"], "tilt": tilt,
-                          "clearance": model.clearance, "axial": axial})  # fmt: skip
-        return low["value"] / model.clearance - (self.touch / model.clearance or self.margin)
-
-    def _shot(self, scene, value):
-        """The Shooter of a scene, and its orbit."""
-        # A floored film has kinks and costs a hundred times more: a looser orbit is all it can give.
-        tight, target = (1e-10, 1e-8) if scene.film.cavitation_pressure is None else (1e-6, 1e-5)
-        shooter = Shooter(scene, self.accuracy, tight=tight)
-        shooter.most_work = MOST_WORK - self.work
-        try:
-            orbit = shooter.find(self._guess(value, shooter), self.monodromy, target=target, most=25)
-        except TooMuchWork:
-            raise TooMuchWork(f"more than {MOST_WORK} right-hand sides for the path of orbits") from None
-        finally:
-            self.work += shooter.work
-        self.monodromy = orbit.monodromy
-        return shooter, orbit
-
-    def multiplier(self) -> float | None:
-        """Largest modulus of the Floquet multipliers of the last orbit."""
-        return self.finder.multiplier(self.orbit)
-
-    def _guess(self, value, shooter):
-        """The linear steady state, which scales with the forcing, plus what the nonlinear film adds to it: a
-        polynomial in the forcing through the orbits known (and through nothing at no forcing)."""
-        linear = shooter.guess()
-        if not self.known:
-            return linear if self.start is None else self.start
-        if len(self.known) == 1:
-            v, x, before = self.known[0]
-            return linear + (x - before) * (value / v) ** 2
-        nodes = [0.0, *(v for v, _, _ in self.known)]
-        added = [np.zeros_like(linear), *(x - before for _, x, before in self.known)]
-        total = np.zeros_like(linear)
-        for i, (node, part) in enumerate(zip(nodes, added, strict=True)):
-            others = [n for j, n in enumerate(nodes) if j != i]
-            total += part * np.prod([(value - n) / (node - n) for n in others])
-        return linear + total
-
-    @staticmethod
-    def _mean_axial(model, orbit):
-        """Axial opening of the gap (m) at the start of the orbit: how far the seal has lifted."""
-        signs = {"stator_z": 1.0, "rotor_z": -1.0}
-        return float(sum(signs.get(name, 0.0) * x for name, x in zip(model.unknowns.names, orbit.start, strict=False)))
-
-    def follow(self, linear: float, tolerance: float, most: float = np.inf) -> float:
-        """The forcing that touches, from below: ever shorter secant steps, since a trial orbit must not cross the
-        closed film.  The gap closes ever more slowly (the seal opens axially), so a secant stops short of touch.
-        Raises NoOrbit also where the orbit at the forcing `most`, the last that is followed, does not touch."""
-        clearance = Model(self.scene(0.0), 1e-6).clearance if self.touch else 1.0
-        low, low_left, step = 0.0, 1.0 - (self.touch / clearance or self.margin), 0.4 * linear
-        for _ in range(80):
-            value = min(low + step, most)
-            try:
-                left = self.excess(value)
-            except TooMuchWork:
-                raise
-            except NoOrbit:
-                step *= 0.5
-                if abs(step) < 1e-6 * linear:
-                    raise
-                continue
-            slope = (left - low_left) / (value - low)
-            low, low_left = value, left
-            if abs(left) < 1e-6 or abs(step) < tolerance * value:
-                return float(value - left / slope)
-            if value == most and left > 0.0:
-                raise NoOrbit("the last orbit that may be followed does not touch")
-            aim = 0.3 * left if left > 0.03 else 0.0
-            # Where tilting opens the thinnest film, too, no secant knows how far.
-            step = min((aim - left) / slope, 0.2 * linear) if slope < 0.0 else 0.2 * linear
-            if value > 20 * linear:
-                raise NoOrbit("no touch up to twenty times the linear onset")
-        raise NoOrbit("the path of orbits did not reach touch in 80 steps")
-
-    def close(self, near: float, tolerance: float) -> float:
-        """The forcing that touches, by secants from a forcing already close."""
-        a, b = 0.98 * near, near
-        f_a, f_b = self.excess(a), self.excess(b)
-        for _ in range(12):
-            c = b - f_b * (b - a) / (f_b - f_a)
-            c = min(max(c, 0.8 * near), 1.2 * near)
-            a, f_a, b, f_b = b, f_b, c, self.excess(c)
-            if abs(b - a) < tolerance * near:
-                return float(b)
-        raise NoOrbit("the floored onset did not settle")

@@ -9,7 +9,8 @@ import numpy as np
 from pydantic import Field
 from scipy.optimize import brentq
 
-from ..analysis.shooting import Follower, NoOrbit
+from ..analysis.orbit_path import Follower
+from ..analysis.shooting import NoOrbit
 from ..answers import Answer, Axis, Level, Panel, Series, Table
 from ..dynamics.model import Model
 from ..dynamics.warm_state import at_work

@@ -1,4 +1,5 @@
-"""Steady state: the periodic response by shooting, with Floquet multipliers, instead of waiting for transients."""
+"""Steady state: the periodic response by harmonic balance, or shooting where it is not smooth, with Floquet
+multipliers, instead of waiting for transients."""
 
 import math
 from dataclasses import dataclass
@@ -6,7 +7,8 @@ from functools import partial
 
 import numpy as np
 
-from ..analysis.shooting import ForcedWave, NoOrbit, Shooter
+from ..analysis.harmonic_balance import HarmonicBalance, NotSmooth
+from ..analysis.shooting import ForcedWave, NoOrbit, Orbit, Shooter
 from ..answers import Answer, Axis, Level, Panel, Series, Table, table_of
 from ..dynamics import modes
 from ..dynamics.model import Model
@@ -67,34 +69,32 @@ def run(scenario, settings, tools) -> Answer:
         if given < least:
             raise ScenarioError(scenario.name, f"study.steady_state.{key}", str(given), f"{least} or more")
     try:
-        shooter = Shooter(scenario.scene, scenario.run.accuracy, settings.turns)
+        finder = _finder(HarmonicBalance, scenario, settings)
     except NoOrbit as reason:
         try:
             return _turning(ForcedWave(scenario.scene, scenario.run.accuracy), settings)
         except NoOrbit:
             return _time_domain(scenario, str(reason))
-    linear = shooter.model.linear_scene()
-    critical, verdict = critical_speed(shooter.model), modes.verdict(linear.modes())
+    linear = finder.model.linear_scene()
+    critical, verdict = critical_speed(finder.model), modes.verdict(linear.modes())
     try:
-        orbit = shooter.find()
+        finder, orbit, waves = _orbit(finder, scenario, settings)
     except NoOrbit as reason:
         values = [v for mode in linear.modes() for v in {mode.value, mode.value.conjugate()}]
-        foretold = [complex(np.exp(v * shooter.period)) for v in values]
-        numbers = {"status": Status.FAILED, "period": shooter.period, "multipliers": None, "stable": None,
+        foretold = [complex(np.exp(v * finder.period)) for v in values]
+        numbers = {"status": Status.FAILED, "period": finder.period, "multipliers": None, "stable": None,
                    "h_min": None, "relative_misalignment": None, "critical_speed": critical, "near_threshold": [],
-                   "orbit": None, "reason": str(reason), "defects": shooter.defects,
+                   "orbit": None, "reason": str(reason), "defects": finder.defects,
                    "linear": {"verdict": verdict, "multipliers": [[m.real, m.imag] for m in foretold],
-                              **_linear_film(shooter, settings.samples)}}  # fmt: skip
+                              **_linear_film(finder, settings.samples)}}  # fmt: skip
         there = f"critical speed {in_words('speed', critical)}" if critical else "no critical speed"
         found = f"No periodic steady state was found: {reason}; linear theory: {verdict}, {there}."
         return Answer(numbers, found, panels=_panels(numbers))
     tools.say(0.1)
-    # Of a seal that follows closely the accuracy of a run is more than the whole relative tilt.
-    waves = shooter.extremes(orbit.start, _samples(shooter, settings.samples), min(scenario.run.accuracy, SHARP))
-    answers = linear.answers(shooter.model.segment().harmonics())
-    most, least, _ = steady_extremes(linear, answers, shooter.period)
+    answers = linear.answers(finder.model.segment().harmonics())
+    most, least, _ = steady_extremes(linear, answers, finder.period)
     rows = []
-    if critical and not shooter.model.unknowns.has_residual_form:
+    if critical and not finder.model.unknowns.has_residual_form:
         rows = _near_threshold(scenario, settings, critical, tools)
     numbers = {
         "period": orbit.period,
@@ -105,9 +105,9 @@ def run(scenario, settings, tools) -> Answer:
         "h_min": waves["h_min"],
         "relative_misalignment": waves["relative_misalignment"],
         "linear": {"relative_max": most, "relative_min": least, "verdict": verdict},
-        "unknowns": shooter.model.unknowns.names,
-        "start": {name: float(x) for name, x in zip(shooter.model.unknowns.names, orbit.start, strict=False)},
-        "orbit": _waves(shooter.model, waves),
+        "unknowns": finder.model.unknowns.names,
+        "start": {name: float(x) for name, x in zip(finder.model.unknowns.names, orbit.start, strict=False)},
+        "orbit": _waves(finder.model, waves),
         "near_threshold": rows,
         "critical_speed": critical,
     }
@@ -139,18 +139,35 @@ def _turning(wave, settings) -> Answer:
     return Answer(numbers, found, _tables(numbers), _panels(numbers), [note])
 
 
-def _samples(shooter, asked: int) -> int:
+def _finder(kind, scenario, settings):
+    return kind(scenario.scene, scenario.run.accuracy, settings.turns)
+
+
+def _orbit(finder, scenario, settings) -> tuple[HarmonicBalance | Shooter, Orbit, dict]:
+    """What found the orbit, the orbit, and its samples."""
+    count = _samples(finder, settings.samples)
+    try:
+        orbit = finder.with_multipliers(finder.find())
+        return finder, orbit, finder.extremes(orbit.points, count)
+    except NotSmooth:
+        shooter = _finder(Shooter, scenario, settings)
+        orbit = shooter.find()
+        # Of a seal that follows closely the accuracy of a run is more than the whole relative tilt.
+        return shooter, orbit, shooter.extremes(orbit.start, count, min(scenario.run.accuracy, SHARP))
+
+
+def _samples(finder, asked: int) -> int:
     """Samples of a period: as asked, and more where the fastest forcing has many cycles in it."""
-    fastest = max((abs(h.frequency) for h in shooter.model.segment().harmonics()), default=0.0)
-    cycles = math.ceil(fastest * shooter.period / (2 * math.pi))
+    fastest = max((abs(h.frequency) for h in finder.model.segment().harmonics()), default=0.0)
+    cycles = math.ceil(fastest * finder.period / (2 * math.pi))
     return max(asked, min(PER_CYCLE * cycles, MOST)) if cycles > FEW else asked
 
 
-def _linear_film(shooter, samples) -> dict:
+def _linear_film(finder, samples) -> dict:
     """Thinnest film of the linear steady state over one period; below zero where it would cut into the faces."""
-    segment, run = shooter.model.segment(), RunState(shooter.model, shooter.period)
+    segment, run = finder.model.segment(), RunState(finder.model, finder.period)
     at, _, _ = segment.steady_motion()
-    places, times = shooter.model.unknowns.among_three(), np.linspace(0.0, shooter.period, samples)
+    places, times = finder.model.unknowns.among_three(), np.linspace(0.0, finder.period, samples)
     moving = [run.model.vector(q[places], rate[places]) for q, rate in map(at, times)]
     films = [h_min(run.model.face, segment.gap_state(t, y))[0] for t, y in zip(times, moving, strict=True)]
     return {"time": times.tolist(), "h_min": [float(h) for h in films]}
@@ -196,9 +213,8 @@ def _panels(numbers) -> list[Panel]:
                             [curve, *marks], equal=True))  # fmt: skip
     elif numbers.get("defects"):
         left = numbers["defects"]
-        panels.append(Panel("Newton's method on the period map", Axis("1", "step"),
-                            Axis("1", "defect over one period, scales", "log"),
-                            [Series("line", range(1, len(left) + 1), left, style="contact circle")]))  # fmt: skip
+        panels.append(Panel("Newton's method", Axis("1", "step"), Axis("1", "what is left, scales", "log"),
+                            [Series("line", list(range(1, len(left) + 1)), left, style="contact circle")]))  # fmt: skip
     values, name = numbers.get("multipliers"), "Floquet multipliers"
     if not values:
         values, name = linear.get("multipliers"), "Multipliers of linear theory"

@@ -1,4 +1,5 @@
-"""Periodic orbits by shooting: against harmonic balance, the matrix exponential and plain transients."""
+"""Periodic orbits by shooting and by harmonic balance: against each other, linear answers, the matrix exponential and
+plain transients."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -9,6 +10,7 @@ from scenes import fmr, fms, fmsr, free_ring, started
 
 import sealdyn
 from sealdyn.analysis import shooting
+from sealdyn.analysis.harmonic_balance import HarmonicBalance, NotSmooth
 from sealdyn.analysis.shooting import ForcedWave, NoOrbit, NotOneSpeed, Shooter
 from sealdyn.scene.excitation import Shaft, Whirl
 from sealdyn.simulation.selection import choose_method
@@ -167,3 +169,78 @@ def test_two_speeds_have_no_common_frame():
     for scene in (fms(), fmr(), replace(fms(own=0.0), shaft=Shaft(speed=1000.0, whirl=[Whirl(ratio=0.5, angle=1e-6)]))):
         with pytest.raises(NotOneSpeed):
             ForcedWave(scene)
+
+
+# --- harmonic balance ----------------------------------------------------------------------------------
+
+MOTIONS = {
+    "fms": fms(),
+    "fms, nearly unstable": fms("radial", speed=5600.0),
+    "fmr": fmr("radial"),
+    "fmsr": fmsr("radial"),
+    "subharmonic whirl": replace(fms(), shaft=Shaft(speed=1000.0, whirl=[Whirl(ratio=0.5, angle=1e-4)])),
+    "massless": replace(fms(), stator=replace(fms().stator, mass=0.0, transverse_inertia=0.0, polar_inertia=0.0)),
+    "far out": fms("radial", runout=2.5e-3),
+}
+
+
+@pytest.mark.parametrize("name", MOTIONS)
+def test_harmonic_balance_finds_what_shooting_finds(name):
+    """Starts, thinnest films and multipliers of what is differenced and integrated in ways of their own."""
+    balance, shooter = HarmonicBalance(MOTIONS[name]), Shooter(MOTIONS[name])
+    orbit, wanted = balance.with_multipliers(balance.find()), shooter.find()
+    assert np.max(np.abs(orbit.start[: shooter.size] - wanted.start) / shooter.scales) < 1e-8
+    for key in ("value", "radius"):
+        assert orbit.extremes["h_min"][key] == pytest.approx(wanted.extremes["h_min"][key], rel=1e-6)
+    for end in ("min", "max"):
+        tilts = orbit.extremes["relative_misalignment"], wanted.extremes["relative_misalignment"]
+        assert tilts[0][end] == pytest.approx(tilts[1][end], rel=3e-5)
+    largest = np.max(np.abs(wanted.multipliers))
+    assert balance.multiplier(orbit) == pytest.approx(largest, rel=1e-3 if largest < 1e-3 else 1e-5)
+    assert orbit.stable is wanted.stable
+
+
+def test_its_samples_are_those_of_the_orbit_in_time():
+    scene = fms("radial", runout=2.5e-3)
+    balance, shooter = HarmonicBalance(scene), Shooter(scene)
+    found = balance.extremes(balance.find().points, per_period=16)
+    wanted = shooter.extremes(shooter.find().start, per_period=16, accuracy=1e-10)
+    assert found["times"] == pytest.approx(wanted["times"], rel=1e-12)
+    for name, unit in (("displacements", 1.0), ("rates", balance.pace)):
+        assert np.max(np.abs(found[name] - wanted[name]) / (unit * balance.scales)) < 1e-7
+
+
+def test_harmonics_are_added_until_the_last_are_nothing():
+    """The nearer to contact the more; their count is no matter of the first guess."""
+    counts = []
+    for tilt in (1e-5, 2e-3):
+        balance = HarmonicBalance(fms("radial", runout=tilt, own=0.5 * tilt), 1e-7)
+        orbit = balance.find()
+        again = balance.find(orbit.points)
+        assert np.max(np.abs(again.points - orbit.points) / balance.scales) < 1e-8
+        counts.append(len(orbit.points))
+    assert counts[0] < counts[1]
+
+
+def test_an_undamped_ring_has_no_isolated_orbit_but_its_rest():
+    balance = HarmonicBalance(free_ring())
+    orbit = balance.with_multipliers(balance.find())
+    assert np.max(np.abs(np.abs(orbit.multipliers) - 1)) < 1e-9
+
+
+def test_a_motion_of_too_many_cycles_is_left_to_shooting():
+    whirl = [Whirl(ratio=59 / 60, angle=1e-6)]
+    with pytest.raises(NotSmooth):
+        HarmonicBalance(replace(fms(), shaft=Shaft(speed=1000.0, whirl=whirl)))
+
+
+def test_an_orbit_that_closes_the_film_is_none():
+    scene = fms("radial", runout=4.5e-3, own=4.5e-4)
+    low = HarmonicBalance(scene).find().extremes["h_min"]["of_clearance"]
+    for floor, wanted in ((0.9 * low, True), (1.1 * low, False)):
+        balance = HarmonicBalance(replace(scene, film=replace(scene.film, floor=floor)))
+        if wanted:
+            assert balance.find().extremes["h_min"]["of_clearance"] == pytest.approx(low, rel=1e-6)
+        else:
+            with pytest.raises(NoOrbit):
+                balance.find()
