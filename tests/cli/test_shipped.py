@@ -75,7 +75,7 @@ def test_a_wheel_holds_the_scenarios(tmp_path):
     sources = {path.relative_to(source) for path in (source / "sealdyn").rglob("*.py")}
     scenarios = {path.relative_to(source) for path in (source / "scenarios").rglob("*") if path.is_file()}
     shipped = {"sealdyn" / path for path in scenarios}
-    data = {".toml", ".html", ".json"}
+    data = {".toml", ".html", ".json", ".pyi"}
     others = {path.relative_to(source) for path in (source / "sealdyn").rglob("*") if path.suffix in data}
     assert held == sources | shipped | others | {Path("sealdyn/py.typed")}
 
