@@ -1,4 +1,4 @@
-"""Many points on the workers of a Dask scheduler, on as many machines as it has.
+"""Many points on the workers of a Dask scheduler, on as many machines as it has, or of any executor.
 
 Workers may join, leave and die: what a worker had not handed in is evaluated by another.
 """
@@ -6,7 +6,7 @@ Workers may join, leave and die: what a worker had not handed in is evaluated by
 import asyncio
 import logging
 import platform
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import BrokenExecutor, Executor, ThreadPoolExecutor, as_completed
 from contextlib import contextmanager
 from functools import partial
 from threading import Lock
@@ -29,8 +29,11 @@ class ClusterError(Exception):
 
 @contextmanager
 def workers_of(scheduler):
-    """The crew (parallel.evaluate) of a scheduler: its address "tcp://host:port", or a `dask.distributed.Client`, which
-    stays open.  Raises ClusterError."""
+    """The crew (parallel.evaluate) of a scheduler: its address "tcp://host:port", or a `dask.distributed.Client`, or
+    any `concurrent.futures.Executor` (of mpi4py, of a batch system), which stay open.  Raises ClusterError."""
+    if isinstance(scheduler, Executor):
+        yield partial(_on_executor, scheduler)
+        return
     try:
         from distributed import Client
     except ImportError:
@@ -73,6 +76,20 @@ def _check_workers(client):
             raise ClusterError(f"worker {worker}: found {version}; expected sealdyn {__version__}")
 
 
+def _on_executor(executor: Executor, function, todo: dict, what: str):
+    """(key, row, lasting) of the points {key: point} as they come; what waits is not begun once the reader has left.
+    Raises ClusterError."""
+    waiting = {executor.submit(_answer, __version__, function, point): key for key, point in todo.items()}
+    try:
+        for future in as_completed(waiting):
+            yield waiting[future], *future.result()
+    except BrokenExecutor as error:
+        raise ClusterError(f"executor: {error}") from None
+    finally:
+        for future in waiting:
+            future.cancel()
+
+
 def _on_workers(client, function, todo: dict, what: str):
     """(key, row, lasting) of the points {key: point} as they come; DEADLY of one that kills its workers.
     Raises ClusterError."""
@@ -92,7 +109,8 @@ def _on_workers(client, function, todo: dict, what: str):
 
 def _handed_in(client, function, todo: dict, what: str):
     """(key, answer or KilledWorker) of the points as they come.  What waits is cancelled when the reader leaves."""
-    from distributed import KilledWorker, as_completed
+    from distributed import KilledWorker
+    from distributed import as_completed as completed_on
 
     # Named by content, so that a point which two studies ask for at the same time is evaluated once.
     waiting = {
@@ -101,7 +119,7 @@ def _handed_in(client, function, todo: dict, what: str):
     }
     try:
         # Answers are fetched beside those that are read here, not one round trip after the other.
-        for future, found in as_completed(list(waiting), client.loop, with_results=True, raise_errors=False):
+        for future, found in completed_on(list(waiting), client.loop, with_results=True, raise_errors=False):
             if future.status == "error":
                 _, found, _ = found
             elif future.status != "finished":

@@ -144,8 +144,9 @@ def run_study(
 
     `flags` override the scenario's `[study.NAME]`; an interrupted study goes on from its journal beside `out`.
     Points are evaluated by `workers` processes (None: all cores), or by the workers of a Dask `scheduler`: its address
-    "tcp://host:port" or a `dask.distributed.Client`.  `results`: a folder that keeps finished points for other studies,
-    and for those of other machines.  `leave_out`: "contact" for the film alone, or "secondary-seal".
+    "tcp://host:port", a `dask.distributed.Client`, or any `concurrent.futures.Executor`.  `results`: a folder that
+    keeps finished points for other studies, and for those of other machines.
+    `leave_out`: "contact" for the film alone, or "secondary-seal".
     Raises ScenarioError, SceneError, ClusterError (numerics.cluster), ArchiveError where another writes the archive.
 
     >>> scenario = sealdyn.read_scenario("fms.toml")

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import threading
 import time
+from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
@@ -52,6 +53,10 @@ def odd(point):
     if point["x"] == 1:
         raise ValueError("one is not for us")
     return {"x": point["x"], "threads": [library["num_threads"] for library in threadpool_info()]}
+
+
+def ends(point):
+    os._exit(1)
 
 
 def slow(folder, point):
@@ -168,6 +173,20 @@ def test_a_scheduler_answers_what_this_machine_does(scheduler, tmp_path):
     assert by_client["rows"] == local["rows"] and len(list(kept.iterdir())) == 12
     again = run_study("sweep", scenario(), tmp_path / "d.h5", flags=flags, workers=1, results=kept)
     assert again["rows"] == local["rows"] and len(list(kept.iterdir())) == 12
+
+
+def test_any_executor_answers_what_this_machine_does(scheduler, tmp_path):
+    flags = {"vary": [VARY]}
+    wanted = run_study("sweep", scenario(), tmp_path / "a.h5", flags=flags, workers=1)["rows"]
+    with client_of(scheduler) as client, ProcessPoolExecutor(2) as pool:
+        for k, executor in enumerate((pool, client.get_executor())):
+            found = run_study("sweep", scenario(), tmp_path / f"{k}.h5", flags=flags, scheduler=executor)
+            assert found["rows"] == wanted
+        with workers_of(pool) as crew:
+            one, two, three = rows_of(crew, odd, 3, tmp_path)
+            assert two == {"failed": "one is not for us"} and one["x"] == 0 and three["x"] == 2
+        with workers_of(pool) as crew, pytest.raises(ClusterError):
+            rows_of(crew, ends, 2, tmp_path / "b")
 
 
 def test_failures_are_rows_and_workers_keep_to_one_thread(scheduler, tmp_path):

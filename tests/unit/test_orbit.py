@@ -244,3 +244,12 @@ def test_an_orbit_that_closes_the_film_is_none():
         else:
             with pytest.raises(NoOrbit):
                 balance.find()
+
+
+def test_a_gas_dam_comes_back_to_the_orbit():
+    """A film that rings and is dear: one period in time from where harmonic balance says."""
+    scene = sealdyn.read_scenario(SCENARIOS / "gas_dam_reference.toml", ["rotor.runout=1 mrad"]).scene
+    orbit = HarmonicBalance(scene, 1e-6).find()
+    assert orbit.extremes["h_min"]["of_clearance"] < 0.5
+    shooter = Shooter(scene, 1e-6, tight=1e-9)
+    assert np.max(np.abs(shooter.flow(orbit.start) - orbit.start) / shooter.scales) < 1e-6
