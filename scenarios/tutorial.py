@@ -3,26 +3,16 @@
     python tutorial.py          # in an empty folder; some ten seconds, a minute or so more the first time
 
 Editors that know cells run it piece by piece at the marks `# %%`.  The number that a line should give stands behind it.
-What is typed into a shell here, `shell("sealdyn new fms")`, is typed without Python elsewhere.
+In a shell the same is done by `sealdyn new fms`, `sealdyn check fms.toml`, `sealdyn run fms.toml` and their like.
 """
 
-import json
 import math
-import subprocess
-import sys
 from pathlib import Path
 
 from scipy.optimize import minimize_scalar
 
 import sealdyn
-
-
-def shell(line: str) -> str:
-    """What a command of sealdyn prints."""
-    _, *words = line.split()
-    done = subprocess.run([sys.executable, "-m", "sealdyn.cli", *words], capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-    return done.stdout
+from sealdyn.scenario.templates import template
 
 
 def about(number: float, expected: float, within: float = 1e-3) -> bool:
@@ -31,13 +21,13 @@ def about(number: float, expected: float, within: float = 1e-3) -> bool:
 
 
 # %% 1. A scenario to begin with: a stator on springs (FMS) in water of 11 bar, a rotor with runout.
-shell("sealdyn new fms")
+Path("fms.toml").write_text(template("fms"))
 seal = sealdyn.read_scenario("fms.toml")
 print(seal.question)
 assert seal.scene.stator.support and not seal.scene.rotor.support
 
 # %% 2. Check: everything is in SI; what cannot be is said in a line that names the key and what is expected.
-checked = json.loads(shell("sealdyn check fms.toml --json"))
+checked = sealdyn.check(seal)
 print(checked["clearance"])  # 2.39e-06 m: the closing force decides
 assert about(checked["clearance"], 2.3897e-6)
 
@@ -110,13 +100,24 @@ print(growth.sizes, float(growth.min()))  # over damping and speed, as far as th
 assert answer.status == "ok" and float(growth.min()) < 0.0 and "stable" in answer.verdict[0]
 
 # %% 9. Design rules of helicopter seals, NASA CR-120997: experience with oil in gearboxes, no law for water.
-rules = json.loads(shell("sealdyn check better.toml --json"))["design_rules"]
+rules = sealdyn.design_rules("better.toml")
 broken = [rule["rule"] for rule in rules if rule["verdict"] == "fail"]
 print(broken)  # face_pressure (the spring is weak for an oil seal), leakage (5 ml/h are allowed)
 assert broken == ["face_pressure", "leakage"]
 
 # %% 10. What the change has changed, and a page for the review, which opens anywhere.
-print(shell("sealdyn compare outputs/first.h5 outputs/better.h5"))
-shell("sealdyn report outputs/first.h5 outputs/better.h5 outputs/better-stability.h5 --out review.html")
+changed = sealdyn.compare("outputs/first.h5", "outputs/better.h5")["scene"]
+print(*(f"{row['key']}: {row['values']}" for row in changed), sep="\n")  # closing.balance_ratio: [..., 0.9]
+assert [row["key"] for row in changed] == ["closing.balance_ratio"]
+sealdyn.review(["outputs/first.h5", "outputs/better.h5", "outputs/better-stability.h5"], "review.html")
 assert "better" in Path("review.html").read_text(encoding="utf-8")
 print("the page is review.html")
+
+# %% 11. Step by step, as a controller or another program does: slower, until the film takes 30 W.
+steps = sealdyn.Simulation(better)
+state = steps.state
+while state["friction_power"] > 30.0:
+    steps.set(shaft_speed=0.99 * state["shaft_speed"])
+    state = steps.step(1e-3)
+print(steps.time, state["shaft_speed"])  # 19 ms, 255 rad/s; power goes with the square of the speed
+assert about(state["shaft_speed"], 308.923 * 0.99 ** round(steps.time / 1e-3))

@@ -24,9 +24,12 @@ if TYPE_CHECKING:
     from .scenario.templates import example, examples
     from .simulation.batch import simulate_many, sweep
     from .simulation.result import Result
-    from .simulation.run import RunEnded, evaluate, run
+    from .simulation.run import RunEnded, evaluate, list_outputs, run
     from .simulation.simulate import simulate
-    from .studies._runner import Answer, list_studies, run_study, schema, study
+    from .simulation.stepping import Simulation
+    from .studies._asked import study
+    from .studies._runner import Answer, list_studies, run_study, schema
+    from .studies._shaft_table import dyrobes_table, shaft_table
 
 __version__ = "0.1.0"
 __all__ = [
@@ -36,13 +39,16 @@ __all__ = [
     "RunEnded",
     "Scenario",
     "ScenarioError",
+    "Simulation",
     "animate",
     "check",
     "compare",
     "design_rules",
+    "dyrobes_table",
     "evaluate",
     "example",
     "examples",
+    "list_outputs",
     "list_studies",
     "open_archive",
     "read_scenario",
@@ -50,6 +56,7 @@ __all__ = [
     "run",
     "run_study",
     "schema",
+    "shaft_table",
     "simulate",
     "simulate_many",
     "study",
@@ -67,9 +74,11 @@ _PLACES = {
     "scenario.templates": ("example", "examples"),
     "simulation.batch": ("simulate_many", "sweep"),
     "simulation.result": ("Result",),
-    "simulation.run": ("RunEnded", "evaluate", "run"),
+    "simulation.run": ("RunEnded", "evaluate", "list_outputs", "run"),
     "simulation.simulate": ("simulate",),
+    "simulation.stepping": ("Simulation",),
     "studies._runner": ("Answer", "list_studies", "run_study", "schema", "study"),
+    "studies._shaft_table": ("dyrobes_table", "shaft_table"),
 }
 
 

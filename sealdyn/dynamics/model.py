@@ -1,11 +1,13 @@
 """The equations of one scene: constant once made, whatever is run with them."""
 
+import copy
 import math
+from fractions import Fraction
 
 import numpy as np
 
 from ..faces.geometry import FACE_SIZE
-from ..numerics.piecewise_linear import initially
+from ..numerics.piecewise_linear import PiecewiseLinear, initially
 from ..scene.film import aligned_gaps, coning_change
 from ..scene.loads import load_of
 from ..scene.rings import RING_NAMES
@@ -76,6 +78,7 @@ class Model:
             key = f"{RING_NAMES[sticking[0]]}.secondary_seal.law"
             raise SceneError(key, "sticking beside a film with unknowns of its own", '"regularised"')
         self._shifts, self._linear_scenes, self._still_films = {}, {}, {}
+        self.loads = None
         self.algebraic = self.unknowns.algebraic(self.film_matrices()[1]) if self.unknowns.has_residual_form else []
         self.scales, self.reference_rate, self.shortest_period = self.unknowns.scales(self)
         self.capture_speed = CAPTURE * accuracy * self.clearance * self.reference_rate
@@ -87,6 +90,14 @@ class Model:
         if self.unknowns.film_unknowns:
             return self
         return Model(self.given, self.accuracy, None, self.film, share * self.film_error)
+
+    def under(self, scene: Scene, loads) -> "Model":
+        """The same equations under other conditions: the `scene` with what may be a table changed, and `loads` on its
+        rings (from_outside.py).  **Valid** for the segments of a run; numbers at rest are those of the scene."""
+        other = copy.copy(self)
+        other.scene, other.loads = scene, loads
+        other._shifts, other._linear_scenes, other._still_films = {}, {}, {}
+        return other
 
     def _imposed(self) -> list:
         """Everything that may be a table."""
@@ -113,6 +124,12 @@ class Model:
         check_begins(self.scene, duration)
         speeds, times = (self.scene.shaft.speed, self.scene.stator.speed), sweep_breaks(self.scene)
         return split_at_breaks(duration, *speeds, self._imposed(), times)
+
+    def next_break(self, time: Fraction) -> float:
+        """The first time (s) after another at which something imposed has a kink or a step; infinite if none comes."""
+        tables = [quantity for quantity in self._imposed() if isinstance(quantity, PiecewiseLinear)]
+        times = [*sweep_breaks(self.scene), *(t for table in tables for t in table.time)]
+        return min((t for t in times if t > time), default=math.inf)
 
     def instant(self, interval: Interval, tau: float) -> Interval:
         """What stands for the conditions `tau` (s) after an interval's start: itself where nothing changes in it."""

@@ -111,7 +111,8 @@ def _shaft_angle(at):
     return np.mod(turned + at.taus * (speed + 0.5 * slope * at.taus), 2 * np.pi)
 
 
-def _closing_force(at):
+def closing_force(at: Samples) -> np.ndarray:
+    """Closing force (m,), in N."""
     model = at.segment.model
     closing = model.closing.over(at.segment.interval, model.scene.film)
     return closing[0] + closing[1] * at.taus
@@ -142,7 +143,7 @@ SHAFT_AND_FILM = (
     Signal("film_force", "N", "opening force of the film", _gap(FORCE), tallied=True),
     Signal("film_moment_x", "N m", "film moment on the stator about the x axis", _gap(MOMENT_X)),
     Signal("film_moment_y", "N m", "film moment on the stator about the y axis", _gap(MOMENT_Y)),
-    Signal("closing_force", "N", "closing force", _closing_force, tallied=True),
+    Signal("closing_force", "N", "closing force", closing_force, tallied=True),
     Signal("leakage_inner", "m^3/s", "leakage at the inner radius, from high to low pressure", _leakage(FLOW_INNER),
            tallied=True),
     Signal("leakage_outer", "m^3/s", "leakage at the outer radius, from high to low pressure", _leakage(FLOW_OUTER),

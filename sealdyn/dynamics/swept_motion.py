@@ -108,7 +108,8 @@ def sampled(motion: Motion | LoadSamples) -> Sampled:
 def motions(scene) -> dict[int, Sampled]:
     """The splines of a scene by the ring whose carrier they move, 0 stator, 1 rotor."""
     given = {0: scene.housing.motion, 1: scene.shaft.motion}
-    return {ring: sampled(motion) for ring, motion in given.items() if motion is not None}
+    # From outside a motion comes as the spline that it is.
+    return {k: m if isinstance(m, Sampled) else sampled(m) for k, m in given.items() if m is not None}
 
 
 def loads(scene) -> dict[int, Sampled]:

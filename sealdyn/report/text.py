@@ -263,10 +263,24 @@ MOST_ROWS = 24
 def table_lines(table: Mapping) -> list[str]:
     """A table of an answer as JSON has it (answers.as_json): headings, then rows, numbers to the right, words to the
     left; no column without a value but the first."""
+    columns, rows = table_columns(table), table["rows"]
+    if not columns:
+        return []
+    lines = ["  ".join(cells).rstrip() for cells in zip(*columns, strict=True)]
+    return lines + ([f"({len(rows)} rows in the archive)"] if _step(rows) > 1 else [])
+
+
+def _step(rows) -> int:
+    """Of how many rows one is printed."""
+    return -(-len(rows) // MOST_ROWS)
+
+
+def table_columns(table: Mapping) -> list[list[str]]:
+    """The columns of such a table that are printed, each a heading and cells of equal width."""
     rows = table["rows"]
     if not rows:
         return []
-    step = -(-len(rows) // MOST_ROWS)
+    step = _step(rows)
     printed = [*rows[:-1:step], rows[-1]]
     held = [one["quantity"] for one in table.get("of_rows", ())]
     held = [*held[:-1:step], *held[-1:]]
@@ -275,8 +289,7 @@ def table_lines(table: Mapping) -> list[str]:
         values = [row[k] for row in rows]
         if k == 0 or any(value is not None for value in values):
             columns.append(_column(column, values, [row[k] for row in printed], held))
-    lines = ["  ".join(cells).rstrip() for cells in zip(*columns, strict=True)]
-    return lines + ([f"({len(rows)} rows in the archive)"] if step > 1 else [])
+    return columns
 
 
 def _column(column, values, printed, of_rows) -> list[str]:

@@ -53,7 +53,7 @@ __all__ = [
 MOST_BYTES = 1 << 21
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Scenario:
     """A scene with its run, and the file it came from.
 
@@ -94,6 +94,18 @@ class Scenario:
             found = "a scene or run other than its text says"
             raise ScenarioError(self.name, "scene", found, 'with_({"film.clearance": "8 um"}), which changes both')
         object.__setattr__(self, "read", now)
+
+    def __repr__(self) -> str:
+        from ..report.notebook import shortened
+        from ..report.text import question_of
+
+        keys = [line for line in self.to_toml().splitlines() if line.strip() and not line.startswith("#")]
+        return shortened([f"Scenario {self.name}: {' '.join(question_of(self.question).split())}", *keys])
+
+    def _repr_html_(self) -> str:
+        from ..report.notebook import keys_html
+
+        return keys_html(self.to_dict(), f"{self.name}: {self.question}")
 
     def resolved(self) -> dict:
         """Nested SI values of every key, defaults included; only dicts, lists, numbers, strings, None."""

@@ -52,7 +52,7 @@ def _outside(scenario) -> dict[str, str]:
     return {f"films/{name}": found} if found else {}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Result:
     """What a run leaves: `status` (a value of Status), a sentence, the summary as a dict (as `run --json` prints it,
     SI), and the path of the archive, or None and its `content` where it was kept in memory only.
@@ -82,6 +82,16 @@ class Result:
         from ..report.plot import Plot
 
         return Plot(self._at_hand)
+
+    def __repr__(self) -> str:
+        from ..report.notebook import run_repr
+
+        return run_repr(self.summary)
+
+    def _repr_html_(self) -> str:
+        from ..report.notebook import run_html
+
+        return run_html(self.summary)
 
     def _at_hand(self) -> AbstractContextManager[Path]:
         return at_hand(self.archive, self.content)

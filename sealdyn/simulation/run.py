@@ -11,12 +11,15 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from ..scenario.errors import scene_errors_of
-from ..scenario.reader import Scenario, scenario_of
+from ..scenario.reader import Scenario, scenario_of, with_values
+from ..scene.radial import RadialScene
 from ..status import Status
-from .batch import refuse_outputs, run_many
-from .result import Result
-from .simulate import simulate
+from .batch import MOMENT, refuse_outputs, run_many
+from .result import Result, leaves, output, plain, unit_of
+from .simulate import in_memory, simulate
 
+# Tables of a summary that not every run has.
+TABLES = ("heat", "contact", "secondary_seal", "leakage.conditions")
 # Scenarios and outputs whose outputs are known to be there.
 REMEMBERED = 64
 
@@ -88,6 +91,28 @@ def run(
             result = simulate(scenario, Path(folder) / "run.h5", **how)
             summary = {**result.summary, "archive": None}
             return replace(result, summary=summary, archive=None, content=result.archive.read_bytes())
+
+
+def list_outputs(
+    source: Scenario | str | os.PathLike, overrides: Mapping[str, Any] | Iterable[str] = ()
+) -> dict[str, str]:
+    """Dotted keys of the numbers and words that a run of this scenario has, as `outputs` of `evaluate`, `sweep` and
+    `simulate_many`, each with its SI unit, "" without one; found by a moment of the run.
+    Raises ScenarioError for what cannot be run.
+
+    >>> sealdyn.list_outputs("fms.toml")["h_min.value"]
+    'm'
+    """
+    scenario = scenario_of(source, overrides)
+    with scene_errors_of(scenario.name):
+        summary = plain(in_memory(with_values(scenario, {"run.duration": MOMENT}), lowest=False))
+    found = {key: output(summary, key) for key in leaves(summary)}
+    if not isinstance(scenario.scene, RadialScene):
+        # Only found where it is asked for.
+        found["stability.critical_speed"] = None
+    # Lists are no outputs, nor tables that this run does not have.
+    there = {key: value for key, value in found.items() if not (isinstance(value, list) or key in TABLES)}
+    return {key: "" if isinstance(value, str) or key.endswith("said") else unit_of(key) for key, value in there.items()}
 
 
 def evaluate(

@@ -272,7 +272,7 @@ def _folder(path) -> Results:
     return Results(path)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Answer:
     """What a study leaves: its name, `status` (a value of Status), a sentence, the `verdict` in sentences, the `answer`
     as a dict (as `study --json` prints it, SI), and the path of the archive, or None and its `content` where it was
@@ -302,6 +302,16 @@ class Answer:
         info = study_info(self.study)
         return answer_as_dataset(self.answer, info.units, info.along)
 
+    def __repr__(self) -> str:
+        from ..report.notebook import study_repr
+
+        return study_repr(self.study, self.answer)
+
+    def _repr_html_(self) -> str:
+        from ..report.notebook import study_html
+
+        return study_html(self.answer)
+
     def plot(self) -> Figure:
         """Its figure, of matplotlib; `figure.savefig("map.svg")` writes it."""
         from ..report.panels import draw
@@ -325,8 +335,8 @@ def study(
     """Answer a question about a scenario, or that of a TOML file or an archive: `sealdyn.study("sweep", scenario,
     vary="rotor.runout=0:1 mrad:21")`.  Without `out` nothing is left on disk.
 
-    `name` with hyphens or underscores; `settings` those of `[study.NAME]`; `without` "contact" or "secondary-seal";
-    the others as in `run_study`.
+    `name` with hyphens or underscores; `settings` those of `[study.NAME]`, which a type checker knows of the package's
+    own studies; `without` "contact" or "secondary-seal"; the others as in `run_study`.
     Raises ScenarioError for what cannot be studied, ClusterError, ArchiveError.
 
     >>> answer = sealdyn.study("sweep", "fms.toml", vary="rotor.runout=10,20 urad", outputs="h_min.value")

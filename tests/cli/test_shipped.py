@@ -75,7 +75,7 @@ def test_a_wheel_holds_the_scenarios(tmp_path):
     sources = {path.relative_to(source) for path in (source / "sealdyn").rglob("*.py")}
     scenarios = {path.relative_to(source) for path in (source / "scenarios").rglob("*") if path.is_file()}
     shipped = {"sealdyn" / path for path in scenarios}
-    data = {".toml", ".html", ".json"}
+    data = {".toml", ".html", ".json", ".pyi"}
     others = {path.relative_to(source) for path in (source / "sealdyn").rglob("*") if path.suffix in data}
     assert held == sources | shipped | others | {Path("sealdyn/py.typed")}
 
@@ -151,5 +151,5 @@ def test_the_tutorial_does_what_it_says(tmp_path):
 
 def test_every_cell_is_short_and_holds_a_number_to_what_it_says():
     _, *cells = TUTORIAL.read_text().split("\n# %% ")
-    assert [cell.split(".")[0] for cell in cells] == [str(number + 1) for number in range(10)]
+    assert [cell.split(".")[0] for cell in cells] == [str(number + 1) for number in range(11)]
     assert all("assert" in cell and len(cell.splitlines()) <= 20 for cell in cells)

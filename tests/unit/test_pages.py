@@ -5,13 +5,13 @@ import re
 from pathlib import Path
 
 import pytest
-from benchmark import gallery, key_reference
+from benchmark import gallery, key_reference, typed_settings
 
 from sealdyn.scenario.schema import json_schema
 from sealdyn.scenario.tables import RadialFile
 
 
-@pytest.mark.parametrize("made", [gallery, key_reference], ids=lambda made: made.__name__)
+@pytest.mark.parametrize("made", [gallery, key_reference, typed_settings], ids=lambda made: made.__name__)
 def test_page_is_what_its_script_writes(made):
     """`python tests/benchmark/NAME.py` writes it."""
     assert made.PAGE.read_text() == made.page()

@@ -21,6 +21,10 @@ sealdyn.study("equilibrium", "pump.toml").data.h_mni + 1 + sealdyn.__version__.y
 sealdyn.examples() + 1
 sealdyn.example("fms_reference").with__({})
 sealdyn.run("pump.toml").plot.orbits()
+sealdyn.study("equilibrium", "pump.toml", pionts=61)
+sealdyn.study("equilibrium", "pump.toml", points="many")
+sealdyn.study("equilibirum", "pump.toml")
+sealdyn.Simulation("pump.toml").step("1 ms")
 """
 
 

@@ -56,6 +56,19 @@ def runs(scenario: sealdyn.Scenario, folder: Path) -> None:
     assert_type(sealdyn.simulate_many(scenario, [{"rotor.runout": 1e-5}], ["h_min.value"], workers=1), xarray.Dataset)
 
 
+def steps(scenario: sealdyn.Scenario) -> None:
+    """A run in steps."""
+    seal = sealdyn.Simulation(scenario, {"rotor.runout": "20 urad"})
+    seal.set(shaft_speed="990 rad/s", shaft_tilt_x=(1e-6, 0.0, 2.0))
+    kept = seal.snapshot()
+    assert_type(seal.step(1e-4), dict[str, float])
+    seal.restore(kept)
+    assert_type(seal.step_to(2e-4)["h_min"], float)
+    assert_type(seal.time, float)
+    assert_type(seal.units, dict[str, str])
+    assert_type(seal.events, list[dict[str, Any]])
+
+
 def studies(scenario: sealdyn.Scenario, folder: Path) -> None:
     """With an archive and without."""
     answer = sealdyn.study("equilibrium", scenario, workers=1, points=5)
@@ -63,6 +76,9 @@ def studies(scenario: sealdyn.Scenario, folder: Path) -> None:
     assert_type(answer.verdict, list[str])
     assert_type(answer.data, xarray.Dataset)
     assert_type(answer.plot(), Figure)
+    table = sealdyn.shaft_table(scenario, [900.0, "9000 rpm"], whirl_ratio=0.5)
+    assert_type(table, dict[str, Any])
+    assert_type(sealdyn.dyrobes_table(table, 3, "seal"), str)
     assert_type(sealdyn.run_study("equilibrium", scenario, folder / "e.h5", workers=1), dict[str, Any])
 
 
@@ -76,6 +92,7 @@ def verbs(scenario: sealdyn.Scenario, folder: Path) -> None:
     assert_type(sealdyn.animate(folder / "kept.h5", folder / "moved.png"), Path)
     assert_type(sealdyn.schema(), dict[str, Any])
     assert_type(sealdyn.list_studies(), dict[str, str])
+    assert_type(sealdyn.list_outputs(scenario), dict[str, str])
 
 
 def main(folder: Path) -> None:
@@ -83,5 +100,6 @@ def main(folder: Path) -> None:
     assert_type(sealdyn.__version__, str)
     scenario = scenarios()
     runs(scenario, folder)
+    steps(scenario)
     studies(scenario, folder)
     verbs(scenario, folder)
