@@ -13,11 +13,10 @@ from numba import carray
 
 from ..numerics.hermite import lobatto, sample, sample_doubtful
 from ..numerics.kernel import call_rates, inner_kernel, integers, outer_kernel
-from ..solvers.contract import OVERLAP
+from ..solvers.contract import OVERLAP, longest_step
 from ..solvers.integrate import RENEWED
 from ..solvers.sundials_direct import add_refused, restart_cvode, step_cvode
 from ..solvers.sundials_libraries import BLOCK, CALLS, DATA, FUNCTION, JACOBIANS, SCALES
-from ..solvers.sundials_python import longest_step
 from .contact_events import locate_contacts
 from .extrema import track_extremes
 from .native import BLOCK as WORDS

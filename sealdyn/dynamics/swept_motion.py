@@ -86,9 +86,14 @@ class Sampled:
 BERNSTEIN = np.array([[math.comb(i, j) / math.comb(5, j) for j in range(TERMS)] for i in range(TERMS)])
 
 
+def sampled(motion: Motion | LoadSamples | Sampled) -> Sampled:
+    """The spline through the samples of a motion, or of forces (N, N m in place of m, rad); from outside one comes as
+    the spline that it is."""
+    return motion if isinstance(motion, Sampled) else _spline(motion)
+
+
 @lru_cache(maxsize=8)
-def sampled(motion: Motion | LoadSamples) -> Sampled:
-    """The spline through the samples of a motion, or of forces (N, N m in place of m, rad)."""
+def _spline(motion: Motion | LoadSamples) -> Sampled:
     # Loaded only where samples are imposed.
     from scipy.interpolate import PPoly, make_interp_spline
 
@@ -108,8 +113,7 @@ def sampled(motion: Motion | LoadSamples) -> Sampled:
 def motions(scene) -> dict[int, Sampled]:
     """The splines of a scene by the ring whose carrier they move, 0 stator, 1 rotor."""
     given = {0: scene.housing.motion, 1: scene.shaft.motion}
-    # From outside a motion comes as the spline that it is.
-    return {k: m if isinstance(m, Sampled) else sampled(m) for k, m in given.items() if m is not None}
+    return {k: sampled(motion) for k, motion in given.items() if motion is not None}
 
 
 def loads(scene) -> dict[int, Sampled]:

@@ -62,6 +62,8 @@ STATUS = {OUTSIDE: "the film left the clearances of film.tabulated"}
 
 def accepts(film, waves=()) -> str:
     """What faces it takes, "" if it can take these."""
+    if film is not None and film.tabulated is None:
+        return "a table [film.tabulated]"
     plain = film is None or not (film.profile is not None or film.inertia or coning_varies(film) or film.heat)
     return "" if plain and not waves else "plain cones that stay as they are, without waves, heat and inertia"
 

@@ -142,7 +142,7 @@ def _is_radius(holds: Any) -> bool:
 
 def is_list(holds: Any) -> bool:
     """Whether a key holds a list of tables."""
-    return typing.get_origin(holds) is list
+    return typing.get_origin(holds) is list and dataclasses.is_dataclass(typing.get_args(holds)[0])
 
 
 def expected_of(key: str, holds: Any) -> str:
@@ -163,6 +163,8 @@ def expected_of(key: str, holds: Any) -> str:
         return " or ".join(expected_of(key, w) for w in words)
     if typing.get_origin(holds) is typing.Annotated:
         return expected_of(key, words[0])
+    if typing.get_origin(holds) is list:
+        return f"a list, each {expected_of(key, words[0])}"
     plain = {float: "a number", int: "a whole number", bool: "true or false", str: "a string"}
     return plain.get(holds, "a table" if typing.get_origin(holds) is dict else "something else")
 

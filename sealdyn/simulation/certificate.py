@@ -15,11 +15,10 @@ import numpy as np
 
 from ..dynamics.run_state import RunState
 from ..scene.radial import RadialScene
-from ..solvers.contract import TIGHTEST, Block, Cause, Counts, Enough, SolverFailure, Status, tolerance_for
+from ..solvers.contract import BETWEEN, TIGHTEST, Block, Cause, Counts, Enough, SolverFailure, Status, tolerance_for
 from ..solvers.energy_audit import EnergyAudit, missing_energy
 from ..solvers.global_error import GlobalErrorEstimate
 from ..solvers.integrate import COMPILED, Advance, Outcome
-from ..solvers.matrix_exponential import BETWEEN
 from ..solvers.methods import METHODS
 from .film_error import cell_error, model_error
 from .selection import Plan, choose_method

@@ -13,7 +13,6 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from .. import __version__
-from ..archive import open_archive
 from ..extensions import digest
 from ..films import own_film_names
 from ..kernel_cache import solvers_digest
@@ -73,6 +72,8 @@ class Result:
     def data(self) -> xarray.Dataset:
         """All of the archive as an `xarray.Dataset` in memory, as `open_archive` has it: series over `time` with units,
         fields over `field_time` and their grid."""
+        from ..archive import open_archive
+
         with self._at_hand() as path, open_archive(path) as lazy:
             return lazy.load()
 

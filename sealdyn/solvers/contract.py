@@ -25,6 +25,18 @@ import numpy as np
 from ..numerics.hermite import integrals, sample, sample_doubtful
 from ..status import Status as Status
 
+# Share of a tolerance that what lies between steps of the matrix exponential may err by.
+BETWEEN = 0.1
+# Steps between two answers of SUNDIALS at most.
+MOST_STEPS = 1_000_000
+
+
+def longest_step(segment) -> float:
+    """Longest step (s) of a segment as SUNDIALS wants it: 0 means any."""
+    longest = segment.longest_step()
+    return longest if np.isfinite(longest) else 0.0
+
+
 # Measured over the shipped scenarios (tests/convergence): error relative to the scales, per solver tolerance, of a
 # damped scene and per remembered period of an undamped one.  Multistep methods err by up to a tolerance a step
 # and always the same way; CVODE's Adams stays at low order on an undamped oscillation (its step may only grow by

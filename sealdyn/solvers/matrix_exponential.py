@@ -2,10 +2,12 @@
 
 import numpy as np
 
-# What lies between exact steps is interpolated (numerics/hermite.py); that error is at most this share of the
+from .contract import BETWEEN
+
+# What lies between exact steps is interpolated (numerics/hermite.py); that error is at most BETWEEN of the
 # tolerance.  For exp(x) through six steps of x radians it is BY x^12 at most, or WORST; at a segment's ends, where all
 # neighbours are on one side, 2000 times as much: there the steps are half as long.
-BETWEEN, BY, WORST, CONDITIONS, MOST_RADIANS = 0.1, 1e-7, 30.0, 12, 1.5
+BY, WORST, CONDITIONS, MOST_RADIANS = 1e-7, 30.0, 12, 1.5
 # Steps at once: while their length changes fast, and as long as it would not change by much; at the ends; points of the
 # quadrature in each.
 CHANGING, LASTING, AT_ENDS, POINTS = 8, (256, 128, 64, 32, 16), 4, 5

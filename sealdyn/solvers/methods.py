@@ -4,9 +4,7 @@ import os
 
 import numpy as np
 
-from . import sundials_python
 from .contract import SolverFailure, absolute_tolerances, failure_message
-from .matrix_exponential import expm
 from .sundials_libraries import libraries
 
 
@@ -99,6 +97,8 @@ def _back_end(segment, counts, form):
     sparse = native is not None and bool(native.derivatives)
     counts.slow = why_slow(sparse)
     if counts.slow or not getattr(native, form, 0):
+        from . import sundials_python
+
         counts.back_end = SCIKIT_SUNDAE
         return sundials_python
     loaded = libraries()
@@ -117,12 +117,19 @@ def _trbdf2(*given):
     return trbdf2(*given)
 
 
+def _expm(*given):
+    """The matrix exponential, loaded where it is used: for linear scenes."""
+    from .matrix_exponential import expm
+
+    return expm(*given)
+
+
 METHODS = {
     "adams": cvode,
     "bdf": cvode,
     "ida": ida,
     "dop853": dop853_or_radau,
     "radau": dop853_or_radau,
-    "expm": expm,
+    "expm": _expm,
     "trbdf2": _trbdf2,
 }

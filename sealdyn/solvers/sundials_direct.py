@@ -24,7 +24,7 @@ from ..numerics.kernel import (
     outer_kernel,
     short_integers,
 )
-from .contract import FEW, SolverFailure, absolute_tolerances, failure_message
+from .contract import FEW, MOST_STEPS, SolverFailure, absolute_tolerances, failure_message, longest_step
 from .sundials_libraries import (
     BLOCK,
     CALLS,
@@ -44,7 +44,6 @@ from .sundials_libraries import (
     libraries,
     values_of,
 )
-from .sundials_python import MOST_STEPS, longest_step
 
 # The loops are linked to the libraries as they are compiled.
 if isinstance(libraries(), str):

@@ -4,19 +4,11 @@ import warnings
 
 import numpy as np
 
-from .contract import FEW, MANY, SolverFailure, absolute_tolerances, failure_message
+from .contract import FEW, MANY, MOST_STEPS, SolverFailure, absolute_tolerances, failure_message, longest_step
 
 # Chunks of SUNDIALS' steps, and what a healthy one may cost (evaluations per fastest forcing period): beyond it
 # something is closing or crawling, and it is walked step by step.
 FIRST_CHUNK, STEPS_PER_CHUNK, BUDGET = 20.0, 3000, 400.0
-# Between two of its answers.
-MOST_STEPS = 1_000_000
-
-
-def longest_step(segment) -> float:
-    """Longest step (s) as SUNDIALS wants it: 0 means any."""
-    longest = segment.longest_step()
-    return longest if np.isfinite(longest) else 0.0
 
 
 def _in_chunks(solver, segment, tau, y, yp, method, counts, allow):

@@ -33,6 +33,7 @@ class Coefficients(How, total=False):
     frequency: Any
     speed: Any
     coning: Any
+    clearance: Any
 
 class ContactOnset(How, total=False):
     key: Any

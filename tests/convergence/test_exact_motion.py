@@ -13,9 +13,8 @@ from scipy.linalg import expm
 from sealdyn.dynamics.linearisation import ExactMotion
 from sealdyn.scene.film import Coefficients
 from sealdyn.scene.rings import Rotor
-from sealdyn.solvers.contract import Counts, Recorder
+from sealdyn.solvers.contract import BETWEEN, Counts, Recorder
 from sealdyn.solvers.integrate import solve
-from sealdyn.solvers.matrix_exponential import BETWEEN
 from sealdyn.solvers.matrix_exponential import expm as exact_steps
 
 TURN = 2 * math.pi / SPEED

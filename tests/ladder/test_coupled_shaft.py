@@ -32,6 +32,7 @@ def at_once(shaft, end):
     return found.y[0, -1], found.y[2, -1]
 
 
+@pytest.mark.core
 def test_both_in_turn_come_to_what_they_are_at_once():
     """By the square of the step; and the seal is felt."""
     example = runpy.run_path(str(SCENARIOS / "coupled_shaft.py"))

@@ -33,6 +33,7 @@ def scenario_of(kind, fluid):
     return type(read_scenario(SCENARIOS / f"{name}.toml")).from_dict(tables)
 
 
+@pytest.mark.core
 @pytest.mark.parametrize("fluid", ["liquid", "gas", "stored gas"])
 @pytest.mark.parametrize("kind", ["FMS", "FMR", "FMSR"])
 def test_the_reaction_of_a_run_is_that_of_the_impedance(kind, fluid):

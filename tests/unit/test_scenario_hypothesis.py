@@ -128,7 +128,9 @@ def test_deep_nesting(key, depth):
 
 
 @pytest.mark.core
-def test_the_unbroken_ones_pass():
+def test_the_unbroken_ones_pass(monkeypatch):
+    # Files are named as beside a scenario.
+    monkeypatch.chdir(Path(__file__).parents[2] / "scenarios")
     for tree in TREES:
         text = "\n".join(f"{quoted(k)} = {as_toml(v)}" for k, v in tree.items())
         assert isinstance(parse_scenario(text, "whole.toml"), Scenario)
