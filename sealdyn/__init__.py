@@ -28,7 +28,8 @@ if TYPE_CHECKING:
     from .simulation.simulate import simulate
     from .simulation.stepping import Simulation
     from .studies._asked import study
-    from .studies._runner import Answer, list_studies, run_study, schema
+    from .studies._declared import list_studies, schema
+    from .studies._runner import Answer, run_study
     from .studies._shaft_table import dyrobes_table, shaft_table
 
 __version__ = "0.1.0"
@@ -77,7 +78,8 @@ _PLACES = {
     "simulation.run": ("RunEnded", "evaluate", "list_outputs", "run"),
     "simulation.simulate": ("simulate",),
     "simulation.stepping": ("Simulation",),
-    "studies._runner": ("Answer", "list_studies", "run_study", "schema", "study"),
+    "studies._declared": ("list_studies", "schema"),
+    "studies._runner": ("Answer", "run_study", "study"),
     "studies._shaft_table": ("dyrobes_table", "shaft_table"),
 }
 

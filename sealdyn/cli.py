@@ -111,7 +111,7 @@ def _read(path: Path, overrides):
         with reads(path) if path.suffix == ".h5" else contextlib.nullcontext():
             scenario = read_scenario(path, overrides or ())
         if scenario.study:
-            from .studies._runner import refuse_unknown_studies
+            from .studies._declared import refuse_unknown_studies
 
             refuse_unknown_studies(scenario)
         return scenario
@@ -240,7 +240,7 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
 def _refuse_settings(scenario) -> list[str]:
     """Ends the verb for settings of a study that it does not take; else what is odd in them."""
     from .scenario.errors import ScenarioError
-    from .studies._runner import refuse_settings
+    from .studies._declared import refuse_settings
 
     try:
         return refuse_settings(scenario)
@@ -301,7 +301,7 @@ def new(
 @app.command()
 def schema(radial: Annotated[bool, typer.Option("--radial", help="of lip and circumferential seals")] = False):
     """Print the JSON schema of scenario files, for editors."""
-    from .studies._runner import schema as schema_of
+    from .studies._declared import schema as schema_of
 
     print(json.dumps(schema_of(radial), indent=2))
 
@@ -582,7 +582,7 @@ class _StudyCommand(TyperCommand):
         if {"-h", "--help"} & set(args):
             from rich.markup import escape
 
-            from .studies._runner import help_text
+            from .studies._declared import help_text
 
             self.epilog = escape(help_text(next((word for word in args if word[0] != "-"), "")))
         return super().parse_args(context, args)

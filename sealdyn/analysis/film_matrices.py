@@ -1,4 +1,5 @@
-"""Stiffness and damping of film and asperities about any state of the gap, and the axial balance of tilted faces."""
+"""Stiffness and damping of film and asperities about any state of the gap and over a grid of states, and the axial
+balance of tilted faces."""
 
 from dataclasses import dataclass
 
@@ -21,6 +22,8 @@ from ..faces.geometry import (
     SPIN_DIFFERENCE,
 )
 from ..quantities import resolved
+from ..scene.scene import SceneError
+from ..scene.variants import frozen_at_start, with_values
 
 # Rows and columns of the matrices.
 ORDER = ("axial", "tilt_x", "tilt_y")
@@ -82,3 +85,38 @@ def opened(model: Model, tilt: complex, whirl: float) -> float:
     if excess(low) * excess(high) > 0:
         raise ValueError(f"no axial balance at a tilt of {abs(tilt):.4g} rad")
     return crossing(excess, low, high)
+
+
+def mapped(scene, accuracy: float, speeds, frequencies, conings=None, clearances=None) -> dict:
+    """{speed, frequency (rad/s), coning (rad) or clearances (m), if asked} and, over these in this order, `clearance`
+    (m), `stiffness` and `damping` (3, 3) of the aligned film; `failed` the reasons of points that cannot be, whose
+    numbers are None.
+
+    `scene` constant in time.  At every speed and coning it is the scene with these: a clearance that is given stays,
+    one that the closing force decides follows.  A film that does not store has the same at every frequency.
+    """
+    axis, key, values = ("coning", "film.coning", conings) if clearances is None else ("clearances", "", clearances)
+    shape = (len(speeds), len(frequencies), 1 if values is None else len(values))
+    clearance, failed = np.full(shape, None), {}
+    both = {name: np.full(shape, None) for name in ("stiffness", "damping")}
+    for a, speed in enumerate(speeds):
+        for c, value in enumerate([None] if values is None else values):
+            there = with_values(scene, {"shaft.speed": float(speed)} | ({key: float(value)} if key and values else {}))
+            there = there if clearances is None else frozen_at_start(there, clearance=float(value))
+            try:
+                model, found = Model(there, accuracy), None
+                for b, omega in enumerate(frequencies):
+                    if found is None or model.interface.stores:
+                        found = [part.tolist() for part in matrices(model, State(), omega=omega)]
+                    clearance[a, b, c], both["stiffness"][a, b, c], both["damping"][a, b, c] = model.clearance, *found
+            except (SceneError, ValueError) as error:
+                failed.setdefault(str(error), []).append({"speed": float(speed), axis: value})
+    answer = {"speed": [float(w) for w in speeds], "frequency": [float(w) for w in frequencies]}
+    if values is not None:
+        answer[axis] = [float(v) for v in values]
+    flat = {"clearance": clearance, **both}
+    for name, held in flat.items():
+        nothing = None if name == "clearance" else [[None] * 3] * 3
+        listed = [[[nothing if v is None else v for v in row] for row in plane] for plane in held]
+        answer[name] = listed if values is not None else [[row[0] for row in plane] for plane in listed]
+    return answer | {"failed": [{"reason": reason, "points": points} for reason, points in failed.items()]}

@@ -443,9 +443,6 @@ def at_work(scene, speed: float | None = None, near: WarmState | None = None):
     if state is None and near is not None:
         raise NoWarmState("shaft.speed", f"no warm state at {speed:.6g} rad/s", "a speed whose heat is carried away")
     if state is None:
-        raise NoWarmState(
-            "film.heat",
-            f"no warm state: {found.why_none()}",
-            "rings and leakage that carry the heat away, or a liquid known to a higher temperature",
-        )
+        expected = "rings and leakage that carry the heat away, or a liquid known to a higher temperature"
+        raise NoWarmState("film.heat", f"no warm state: {found.why_none()}", expected)
     return found.at(state.rise, state.clearance), state

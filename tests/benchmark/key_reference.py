@@ -14,7 +14,7 @@ from sealdyn import read_scenario
 from sealdyn.scenario.schema import json_schema
 from sealdyn.scenario.tables import RadialFile
 from sealdyn.studies import study_names
-from sealdyn.studies._runner import about, settings_of, time_of
+from sealdyn.studies._declared import about, settings_of, time_of
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 PAGE = SCENARIOS / "README.md"

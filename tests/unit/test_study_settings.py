@@ -21,8 +21,9 @@ from sealdyn.studies import (
     sweep,
     work_precision,
 )
-from sealdyn.studies._runner import help_text, settings_of, study_info, study_module
-from sealdyn.studies._runner import schema as whole_schema
+from sealdyn.studies._declared import help_text, settings_of
+from sealdyn.studies._declared import schema as whole_schema
+from sealdyn.studies._runner import study_info, study_module
 
 SCENARIO = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
 
