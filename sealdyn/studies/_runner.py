@@ -160,7 +160,7 @@ def run_study(
     if not _is_radial(scenario.scene):
         if "secondary-seal" in info.refuses:
             scene, springs = variants.with_springs_for_seals(studied.scene)
-            studied = replace(studied, scene=scene)
+            studied = replace(studied, scene=scene, read=None)
         _refuse(name, studied.scene, info.refuses)
     settings = study_settings(scenario, name, module.Settings, flags or {})
     out = archive_of(name, scenario, out)

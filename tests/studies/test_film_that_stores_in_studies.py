@@ -143,8 +143,11 @@ def test_summary_has_modes_and_steady_state_at_their_frequencies():
     assert theory["relative_max"] == pytest.approx(tilt["steady_max"], rel=1e-4)
 
 
-def test_a_steady_state_of_a_film_that_stores_is_told_from_time():
-    scenario = reference("fms", "run.duration=3 ms", "run.accuracy=1e-2")
-    found = steady_state.run(scenario, steady_state.Settings(), InProcess())
-    assert found["orbit"] is None and found["h_min"]["value"] > 0
-    assert found["reason"] in found.found
+def test_a_steady_state_of_a_film_that_stores_is_that_of_rings_and_film():
+    """Of little forcing it is the linear one; whether the seal keeps it is not known."""
+    found = steady_state.run(reference("fms"), steady_state.Settings(), InProcess())
+    assert found["multipliers"] is None and found["stable"] is None and found.notes
+    tilt, theory = found["relative_misalignment"], found["linear"]
+    assert tilt["max"] == pytest.approx(theory["relative_max"], rel=1e-3)
+    assert tilt["min"] == pytest.approx(theory["relative_min"], rel=1e-2)
+    assert max(found["orbit"]["relative_misalignment"]) == pytest.approx(tilt["max"], rel=1e-3)
