@@ -37,6 +37,7 @@ from sealdyn.scene.film import Profile
 from sealdyn.scene.patterns import Waviness
 from sealdyn.scene.rings import Rotor, Stator
 from sealdyn.scene.scene import SceneError
+from sealdyn.scene.tabulated import Tabulated
 from sealdyn.solvers.contract import Block, Counts
 from sealdyn.solvers.methods import METHODS
 from sealdyn.studies._runner import run_study
@@ -441,7 +442,10 @@ def test_waves_that_close_the_film_at_the_start():
 
 
 def test_films_say_what_faces_they_take():
-    cone, worn, waves = film(), film(profile=Profile(*SHAPE)), [Waviness(2, UM)]
+    # A film of numbers wants them.
+    numbers = Tabulated()
+    cone, worn = film(tabulated=numbers), film(tabulated=numbers, profile=Profile(*SHAPE))
+    waves = [Waviness(2, UM)]
     for name in all_film_names():
         accepts = film_named(name).accepts
         # Of a face that stands still.
