@@ -430,7 +430,7 @@ Density = Annotated[float, Quantity("density", "kg/m^3", '"1000 kg/m^3"', (), 0,
 SpecificHeat = Annotated[float, Quantity("specific heat", "J/(kg*K)", '"4180 J/(kg*K)"', (), 0, True,
     usual=Usual(100.0, 1e5, "kJ/(kg*K)"))]
 Force = Annotated[float, Quantity("force", "N", '"50 N"', usual=Usual(1e-4, 1e6, "kN"))]
-Moment = Annotated[float, Quantity("moment", "N*m", '"0.2 N*m"', usual=Usual(1e-9, 1e5, "N*mm"))]
+Moment = Annotated[float, Quantity("moment", "N*m", '"0.1 N*m"', usual=Usual(1e-6, 1e4, "N*mm"))]
 VolumeFlow = Annotated[float, Quantity("volume flow", "m^3/s", '"5 cc/h", "1 l/min"', (), 0, True,
     usual=Usual(1e-18, 1e-2, "cc/h"))]
 # fmt: on

@@ -1,8 +1,8 @@
 """What another program imposes on a scene from an instant on: speed, pressures, motion of the carriers, loads on rings.
 
 Each is a polynomial in the time since it was given: value and rate, of a motion also its acceleration.  The equations
-are those of the scene: a motion takes the place of one by samples, a moment stands beside those of a mass off the axis,
-a force beside the closing force, and speed and pressures are functions of time in place of the scene's.
+are those of the scene: a motion takes the place of one by samples, a load stands beside the scene's own, and speed and
+pressures are functions of time in place of the scene's.
 """
 
 import math
@@ -16,7 +16,7 @@ from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene.excitation import MOTION_COLUMNS
 from ..scene.rings import RING_NAMES, ROTOR, STATOR
 from ..units import Displacement, Force, Moment, Pressure, Quantity, Speed, Tilt
-from .imposed_motion import MOMENT
+from .imposed_motion import MOMENT, PULL, ROW
 from .intervals import Interval
 from .swept_motion import TERMS, Sampled
 
@@ -60,14 +60,6 @@ class Held(NamedTuple):
         return any(self.terms[1:])
 
 
-class Loads(NamedTuple):
-    """Loads on the rings over an interval: harmonics `rows` (n, ROW) of imposed_motion.py, and what they add to the
-    closing force, value and slope (N, N/s)."""
-
-    rows: np.ndarray
-    closing: tuple[float, float]
-
-
 def imposed_on(model, held: dict[str, Held], interval: Interval):
     """The model whose segment over an interval has what is `held`, by the names of KINDS, in place of the scene's."""
     if not held:
@@ -103,12 +95,9 @@ def _motion(carrier: str, now, interval: Interval) -> Sampled | None:
     return Sampled(np.array([interval.time, interval.time + interval.length]), coefficients, 0.0, 0.0, 0.0)
 
 
-def _loads(now) -> Loads:
-    rows, closing = [], np.zeros(2)
-    for k, ring in enumerate(RING_NAMES):
-        for part, phase in (("x", 0.0), ("y", 0.5 * math.pi)):
-            if f"{ring}_moment_{part}" in now:
-                rows.append([k, MOMENT, *now[f"{ring}_moment_{part}"], 1.0, 0.0, phase, 0.0, 0.0])
-        # The closing force presses the stator towards the rotor, against z, and the rotor along it.
-        closing += (-1.0 if k == STATOR else 1.0) * np.array(now.get(f"{ring}_force", (0.0, 0.0)))
-    return Loads(np.array(rows, dtype=np.float64).reshape(-1, 9), (float(closing[0]), float(closing[1])))
+def _loads(now) -> np.ndarray:
+    """Loads on the rings as harmonics (n, ROW) of imposed_motion.py that stand or grow."""
+    kinds = {"force": (PULL, 0.0), "moment_x": (MOMENT, 0.0), "moment_y": (MOMENT, 0.5 * math.pi)}
+    rows = [[k, kind, *now[name], 1.0, 0.0, phase, 0.0, 0.0] for k, ring in enumerate(RING_NAMES)
+            for part, (kind, phase) in kinds.items() if (name := f"{ring}_{part}") in now]  # fmt: skip
+    return np.array(rows, dtype=np.float64).reshape(-1, ROW)

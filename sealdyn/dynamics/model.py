@@ -93,7 +93,8 @@ class Model:
 
     def under(self, scene: Scene, loads) -> "Model":
         """The same equations under other conditions: the `scene` with what may be a table changed, and `loads` on its
-        rings (from_outside.py).  **Valid** for the segments of a run; numbers at rest are those of the scene."""
+        rings, harmonics (n, ROW) (from_outside.py).  **Valid** for the segments of a run; numbers at rest are those of
+        the scene."""
         other = copy.copy(self)
         other.scene, other.loads = scene, loads
         other._shifts, other._linear_scenes, other._still_films = {}, {}, {}

@@ -79,9 +79,8 @@ class Segment:
         pairs = [*(constant_and_slope(q, interval) for q in varying), self.model.closing.over(interval, film)]
         pairs.append(thermal_coning(scene, interval))
         rows = harmonics_of_segment(scene.shaft, scene.housing, scene.rotor, scene.stator, interval)
-        if (loads := self.model.loads) is not None:
-            pairs[-2] = tuple(own + more for own, more in zip(pairs[-2], loads.closing, strict=True))
-            rows = np.vstack([rows, loads.rows])
+        if self.model.loads is not None:
+            rows = np.vstack([rows, self.model.loads])
         angles = [modulo_turn(interval.rotor_angle), modulo_turn(interval.stator_angle)]
         coned = [film.coning_per_speed_squared]
         head = np.array([x for pair in pairs for x in pair] + [*coned, *angles, len(rows)])

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import get_type_hints
 
 from ..scene.excitation import ACCELERATIONS, MOTION_COLUMNS
-from ..scene.loads import LOAD_COLUMNS, Moment
+from ..scene.loads import LOAD_COLUMNS
 from ..scene.tabulated import COLUMNS, Tabulated
 from ..units import (
     MOST_LISTED,
@@ -21,6 +21,7 @@ from ..units import (
     AngularAcceleration,
     Force,
     Length,
+    Moment,
     QuantityError,
     quantity_of,
     quoted,

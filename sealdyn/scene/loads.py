@@ -5,13 +5,11 @@ rotor to the stator: positive it opens the gap of a floating stator and closes t
 """
 
 from dataclasses import dataclass, field
-from typing import Annotated
 
 from ..numerics.piecewise_linear import points
-from ..units import Angle, Force, Frequency, Listed, Quantity, Sample, Usual, Varying
+from ..units import Angle, Force, Frequency, Listed, Moment, Sample, Varying
 from . import Strict
 
-Moment = Annotated[float, Quantity("moment", "N*m", '"0.1 N*m"', usual=Usual(1e-6, 1e4, "N*mm"))]
 LOAD_COLUMNS = ("force", "moment_x", "moment_y")
 
 

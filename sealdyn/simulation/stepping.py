@@ -221,7 +221,7 @@ class Simulation:
         if kind in RING_NAMES and not unknowns.floats[RING_NAMES.index(kind)]:
             raise ScenarioError(self.name, name, f"a {kind} that is rigid with its carrier", "a ring with a support")
         if part == "force" and unknowns.floats[STATOR] and unknowns.floats[ROTOR]:
-            raise ScenarioError(self.name, name, "two floating rings", "one: a force stands beside the closing force")
+            raise ScenarioError(self.name, name, "two floating rings", "one floating ring")
         conditions = name in ("shaft_speed", "inner_pressure", "outer_pressure")
         if conditions and self._run.model.heat is not None:
             expected = "no film.heat: the faces are as warm as speed and pressures of their own make them"
