@@ -25,8 +25,6 @@ from ..quantities import resolved
 from ..scene.scene import SceneError
 from ..scene.variants import frozen_at_start, with_values
 
-# Rows and columns of the matrices.
-ORDER = ("axial", "tilt_x", "tilt_y")
 STEP = 0.02
 
 

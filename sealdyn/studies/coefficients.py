@@ -7,7 +7,7 @@ from typing import Annotated
 
 import numpy as np
 
-from ..analysis.film_matrices import ORDER, State, gap_state, mapped, matrices, opened
+from ..analysis.film_matrices import State, gap_state, mapped, matrices, opened
 from ..answers import Answer, Axis, Level, Panel, Series, Table
 from ..dynamics.model import Model
 from ..faces.film_thickness import h_min
@@ -16,6 +16,8 @@ from ..scenario.errors import ScenarioError
 from ..scenario.settings import Words, values_in_si
 from ..scene.patterns import grooves_of, waves_of
 from ..scene.scene import SceneError
+from ..scene.tabulated import ELEMENTS as NAMES
+from ..scene.tabulated import ORDER
 from ..scene.variants import frozen_at_start, tilting
 from ..simulation.film_error import steady_tilt
 from ..units import Angle, Length, Speed, Tilt
@@ -28,7 +30,6 @@ DAMPING_UNITS = [[u.replace("/m", "*s/m").replace("/rad", "*s/rad") if "/" in u 
 AXES = ("speed", "frequency", "coning", "clearances")
 # Rows and columns of a matrix.
 ELEMENTS, FORCES = ("force", "motion"), ("force", "moment_x", "moment_y")
-NAMES = [f"{letter}_{row}_{column}" for letter in "kd" for row in ORDER for column in ORDER]
 INFO = Info(
     timed=("fmr_reference", 2),
     asks="How stiff is the film, and how does it damp?",
