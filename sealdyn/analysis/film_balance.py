@@ -18,7 +18,7 @@ from .shooting import NoOrbit, Orbit, TooMuchWork
 
 # How well a step of Newton's method is solved, and products of a matrix that it may take.
 SOLVED, RESTART, MOST_RESTARTS = 1e-4, 60, 3
-# Accuracy of an orbit, of the film's unknowns too: cells err by more.
+# Accuracy of an orbit at least, of the film's unknowns too.
 NEAR = 1e-3
 # Clearances by which a guess is opened until its film has a solution.
 WIDER = (0.0, 0.1, 0.3, 1.0, 3.0)
@@ -30,8 +30,8 @@ class FilmBalance(HarmonicBalance):
     stores, most, most_steps = True, 97, 15
 
     def __init__(self, scene, accuracy: float = NEAR, turns: int = 1):
-        super().__init__(scene, NEAR, turns)
-        # Cells are not smooth enough for more.
+        super().__init__(scene, min(accuracy, NEAR), turns)
+        # Cells are not smooth enough for more than is asked.
         self.sharp = self.settled
 
     def guess(self) -> np.ndarray:

@@ -106,7 +106,7 @@ class Follower:
                     raise
                 continue
             slope = (left - low_left) / (value - low)
-            low, low_left = value, left
+            low, low_left, longest = value, left, 2.0 * longest
             # Where steps were cut a short one says nothing of how far touch is.
             if abs(left) < 1e-6 or abs(left) < tolerance * value * abs(slope):
                 return float(value - left / slope)

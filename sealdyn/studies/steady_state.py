@@ -87,6 +87,8 @@ def run(scenario, settings, tools) -> Answer:
     try:
         finder, orbit, waves = _orbit(finder, scenario, settings)
     except NoOrbit as reason:
+        if stores:
+            return _time_domain(scenario, str(reason))
         values = [v for mode in linear.modes() for v in {mode.value, mode.value.conjugate()}]
         foretold = [complex(np.exp(v * finder.period)) for v in values]
         numbers = {"status": Status.FAILED, "period": finder.period, "multipliers": None, "stable": None,

@@ -8,6 +8,7 @@ from in_process import InProcess
 from radial_cells import film_of
 
 from sealdyn import read_scenario
+from sealdyn.analysis.shooting import NoOrbit
 from sealdyn.dynamics import interface, modes, stability_thresholds
 from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.stability_thresholds import one_by_one
@@ -141,6 +142,19 @@ def test_summary_has_modes_and_steady_state_at_their_frequencies():
     tilt, theory = summary["relative_misalignment"], summary["closed_form"]
     # The rest is the film's nonlinearity.
     assert theory["relative_max"] == pytest.approx(tilt["steady_max"], rel=1e-4)
+
+
+def test_a_steady_state_of_a_film_that_stores_is_told_from_time(monkeypatch):
+    """Where no orbit of rings and film is found."""
+    monkeypatch.setattr(steady_state.FilmBalance, "find", lambda self: raised(NoOrbit("none")))
+    scenario = reference("fms", "run.duration=3 ms", "run.accuracy=1e-2")
+    found = steady_state.run(scenario, steady_state.Settings(), InProcess())
+    assert found["orbit"] is None and found["h_min"]["value"] > 0
+    assert found["reason"] in found.found
+
+
+def raised(error):
+    raise error
 
 
 def test_a_steady_state_of_a_film_that_stores_is_that_of_rings_and_film():
