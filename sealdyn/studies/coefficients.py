@@ -409,7 +409,7 @@ def _map_panels(found) -> list[Panel]:
     drawn = [(title, matrices[name][(..., *entry)], quantity) for title, name, entry, quantity in MAP]
     drawn = [one for k, one in enumerate(drawn) if k == 0 or _any(one[1], matrices[MAP[k][1]])]
     known = clearance[np.isfinite(clearance)]
-    if len(known) and np.ptp(known) > 1e-6 * known.max():
+    if "clearances" not in found and len(known) and np.ptp(known) > 1e-6 * known.max():
         drawn.append(("Clearance", clearance, "clearance"))
     for k, (title, values, quantity) in enumerate(drawn):
         series = []
