@@ -11,7 +11,7 @@ import pkgutil
 from dataclasses import replace
 from functools import cache
 
-from ..extensions import folders, in_folders, installed
+from ..extensions import OutsideError, folders, in_folders, installed, outside_module
 from ..numerics.piecewise_linear import points
 from ..scene.film import profile_errors
 from ..scene.patterns import grooves_of, turning_waves, waves_of, waviness_errors
@@ -43,23 +43,29 @@ def all_film_names() -> list[str]:
     return sorted({*own_film_names(), *in_folders("films"), *installed("films")})
 
 
-@cache
 def _offer(name: str) -> Offer | Film:
     """What is asked of a film before it is chosen."""
-    outside = _outside(name)
-    return outside.OFFER if _is_folder(outside) else outside.FILM
+    module = _module(name)
+    return module.OFFER if _is_folder(module) else module.FILM
 
 
-def _outside(name: str):
-    """The file of a film, or the `__init__` of its folder, which offers it before all of it is loaded."""
-    elsewhere = name not in own_film_names() and name not in in_folders("films")
-    return importlib.import_module(installed("films")[name] if elsewhere else f"{__name__}.{name}")
+def _module(name: str):
+    """The file of a film, or the `__init__` of its folder, which offers it before all of it is loaded.  Raises
+    SceneError."""
+    if name in own_film_names():
+        return importlib.import_module(f"{__name__}.{name}")
+    try:
+        module = outside_module("films", name, "FILM", "OFFER")
+    except OutsideError as error:
+        raise SceneError("film.model", error.found, error.expected) from None
+    if (called := getattr(module, "FILM", None) or module.OFFER).name != name:
+        raise SceneError("film.model", f'"{name}", whose FILM is called "{called.name}"', f'name="{name}" in its file')
+    return module
 
 
-@cache
 def _film(name: str) -> Film:
-    outside = _outside(name)
-    return importlib.import_module(f"{outside.__name__}.film").FILM if _is_folder(outside) else outside.FILM
+    module = _module(name)
+    return importlib.import_module(f"{module.__name__}.film").FILM if _is_folder(module) else module.FILM
 
 
 def _is_folder(module) -> bool:

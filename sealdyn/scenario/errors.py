@@ -53,6 +53,8 @@ PERCENT = re.compile(r"\s*([+-]?\d+(?:\.\d*)?)\s*(?:%|percent|per cent)\s*")
 NEAR = re.compile(r"nearest '(\w+)'(?:, by its keys)?$")
 # Keys that stand in no table.
 ABOVE_TABLES = ("schema",)
+# Tables that have tables of what comes from outside.
+OPEN = {"film": "a film", "stator.load": "a load", "rotor.load": "a load"}
 # Characters of what was expected: it may list names.
 LONGEST = 600
 # Of the keys that there are.
@@ -301,11 +303,20 @@ def _expected_here(path: list[str], holds: Any, error: dict) -> str:
 def _unknown(name: str, kind: type, path: list[str], raw: dict) -> ScenarioError:
     table, key = ".".join(path[:-1]), path[-1]
     what, valid = ("an unknown key", f"a key of [{table}]") if table else ("an unknown table", "a known table")
+    if isinstance(raw_at(raw, path), dict) and table in OPEN:
+        valid += f", or the name of {OPEN[table]} on SEALDYN_PATH, which this is not"
     printable = ".".join([*path[:-1], quoted(key).strip('"')])
     near = nearest(kind, table, key)
     if not table and not near.startswith("nearest") and (like := _table_like(kind, raw.get(key))):
         near = f"nearest '{like}', by its keys"
     return ScenarioError(name, printable, what, f"{valid}; {near}")
+
+
+def raw_at(raw: Any, path: Iterable[str]) -> Any:
+    """What tables of whatever shape have at a path; None of nothing."""
+    for step in path:
+        raw = raw.get(step) if isinstance(raw, dict) else None
+    return raw
 
 
 def _table_like(kind: type, raw: Any) -> str:

@@ -26,7 +26,7 @@ from ..units import (
     quantity_of,
     quoted,
 )
-from .errors import ScenarioError
+from .errors import ScenarioError, raw_at
 
 # What each column may be.
 KINDS = {
@@ -64,7 +64,7 @@ def with_columns(
     names.  Files are looked for from `folder`; `held`: an archive's resolved tables, whose columns stand for the file
     of that name.  What is wrong with a file goes to `wrong`, keys of columns without a unit to `bare`."""
     for table, known in PLACES.items():
-        motion, kept = _samples(raw, table), _samples(held, table)
+        motion, kept = samples_at(raw, table), samples_at(held, table)
         if not isinstance(motion.get("file"), str) or next(iter(known)) in motion:
             continue
         file, key = motion["file"], f"{table}.file"
@@ -91,10 +91,9 @@ def _replaced(tables: dict, path: list[str], value: dict) -> dict:
     return {**tables, step: _replaced(tables[step], rest, value) if rest else value}
 
 
-def _samples(tables, table: str) -> dict:
+def samples_at(tables, table: str) -> dict:
     """The samples at a dotted place of tables of whatever shape; empty without any."""
-    for step in table.split("."):
-        tables = tables.get(step) if isinstance(tables, dict) else None
+    tables = raw_at(tables, table.split("."))
     return tables if isinstance(tables, dict) else {}
 
 
@@ -102,7 +101,7 @@ def refuse_files_elsewhere(raw: dict, name: str, held: dict, asked) -> None:
     """Raises ScenarioError where an archive's scenario, its tables `raw`, names a file that the archive does not hold
     (`held`: its resolved tables): a stranger's words open none.  Keys that the user has `asked` for are his own."""
     for table, known in PLACES.items():
-        motion, kept = _samples(raw, table), _samples(held, table)
+        motion, kept = samples_at(raw, table), samples_at(held, table)
         steps = f"{table}.file".split(".")
         own = asked & {".".join(steps[:n]) for n in range(1, len(steps) + 1)}
         first = next(iter(known))

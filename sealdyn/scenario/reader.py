@@ -10,10 +10,12 @@ import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import ModuleType
 from typing import Any, Self
 
 from ..answers import toml_text
-from ..extensions import digest
+from ..extensions import OutsideError, digest, use
+from ..films import own_film_names
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene import variants
 from ..scene.application import Application, RadialApplication
@@ -28,7 +30,8 @@ from .errors import (
     refuse_unbounded,
     refuse_unreadable,
 )
-from .motion_files import PLACES, refuse_files_elsewhere, whole_file
+from .motion_files import PLACES as SAMPLES
+from .motion_files import refuse_files_elsewhere, samples_at, whole_file
 from .overrides import (
     as_written,
     key_and_words,
@@ -40,7 +43,8 @@ from .overrides import (
     value_of,
     without_arrays,
 )
-from .tables import Run, given_keys, read_tables, table_of
+from .own_options import PLACES
+from .tables import Run, given_keys, kind_of, read_tables, table_of
 
 __all__ = [
     "Run",
@@ -109,7 +113,12 @@ class Scenario:
 
     def resolved(self) -> dict:
         """Nested SI values of every key, defaults included; only dicts, lists, numbers, strings, None."""
-        tree = dataclasses.asdict(self.scene) | {"run": dataclasses.asdict(self.run), "study": self.study}
+        tree = dataclasses.asdict(self.scene)
+        for ring in (tree[name] for name in RING_NAMES if name in tree):
+            if ring["load"] and ring["load"]["model"] is not None:
+                # Its samples follow.
+                ring["load"]["samples"] = None
+        tree |= {"run": dataclasses.asdict(self.run), "study": self.study}
         if self.application is not None:
             tree["application"] = dataclasses.asdict(self.application)
         return _plain(tree)
@@ -137,15 +146,16 @@ class Scenario:
         return text_of(self.to_dict(), self.name, self.question) if anew else self.text
 
     def motions(self) -> dict[str, dict[str, Any]]:
-        """Motions and loads by samples, of "shaft.motion" and the other PLACES: their columns (SI), and the name of
+        """Motions and loads by samples, of "shaft.motion" and the other SAMPLES: their columns (SI), and the name of
         their file if they came from one."""
         if isinstance(self.scene, RadialScene):
             return {}
         given = {}
-        for key in PLACES:
+        for key in SAMPLES:
             table = self.scene
             for step in key.split("."):
-                table = getattr(table, step, None)
+                # Samples of a load from outside are its own.
+                table = getattr(table, step, None) if step != "samples" or not table or table.model is None else None
             if table is not None:
                 given[key] = {k: v for k, v in _plain(dataclasses.asdict(table)).items() if v is not None}
         return given
@@ -155,6 +165,24 @@ class Scenario:
         for each dot, `with_(film__clearance=5e-6)`.  Strings as the user writes them, SI numbers, tables.
         Raises ScenarioError."""
         return with_values(self, {**(values or {}), **{key.replace("__", "."): value for key, value in more.items()}})
+
+    def with_film(self, source: str | os.PathLike[str] | ModuleType, **options: Any) -> Self:
+        """The scenario with a film from outside and its options, those of `[film.NAME]`: its file `films/NAME.py`, or
+        the module of one.  The folder above `films` is on SEALDYN_PATH from then on, here and in processes that are
+        started from here.  Raises ScenarioError.
+
+        >>> scenario = sealdyn.read_scenario("fms.toml").with_film("own/films/flat_springs.py", stiffness="2e7 N/m")
+        >>> scenario.scene.film.model
+        'flat_springs'
+        """
+        file = Path(getattr(source, "__file__", None) or str(source))
+        try:
+            name = use("films", file)
+            if name in own_film_names():
+                raise OutsideError(f"{file}, a name of the package's own", "another name")
+        except OutsideError as error:
+            raise ScenarioError(self.name, "film.model", error.found, error.expected) from None
+        return self.with_({"film.model": name, **{f"film.{name}.{key}": value for key, value in options.items()}})
 
     def unused(self) -> list[str]:
         """Known keys, dotted, that the user gave and that this scene does not use."""
@@ -199,25 +227,29 @@ def _of_archive(path: Path, overrides: Iterable[str]) -> Scenario:
     name = str(info.get("name", path.stem))
     asked = {key_and_words(override, name)[0] for override in overrides}
     held = held if isinstance(held, dict) else {}
-    if not asked & {"film", "film.model"}:
-        _same_outside(info.get("outside"), name)
+    _same_outside(info.get("outside"), held, asked, name)
     scenario = parse_scenario(str(info["scenario"]), name, given, held=held, asked=asked)
     foreign = scenario.run.start.endswith(".h5") and not asked & {"run", "run.start"}
     return dataclasses.replace(scenario, foreign_start=scenario.run.start if foreign else "")
 
 
-def _same_outside(held: Any, name: str) -> None:
-    """Raises ScenarioError where what an archive was made with comes from outside and is gone, or is another."""
-    for place, made in held.items() if isinstance(held, dict) else ():
+def _same_outside(made_with: Any, held: dict, asked, name: str) -> None:
+    """Raises ScenarioError where what an archive was made with comes from outside and is gone, or is another; `held`
+    are its resolved tables, of keys that the user has `asked` for others are meant."""
+    for place, made in made_with.items() if isinstance(made_with, dict) else ():
         room, _, called = str(place).partition("/")
-        if room != "films" or (today := digest(room, called)) == made:
-            continue
-        found = f'"{called}", of another source ({today}) than the archive\'s ({made})'
-        expected = f"the film that the archive was made with, or --set film.model={called}, where today's is meant"
-        if today is None:
-            found = f'"{called}", which is neither installed nor on SEALDYN_PATH'
-            expected = f"the film that the archive was made with (source {made})"
-        raise ScenarioError(name, "film.model", found, expected)
+        for table in (table for table, held_in in PLACES.items() if held_in == room):
+            steps = table.split(".")
+            own = asked & {f"{table}.model", *(".".join(steps[:n]) for n in range(1, len(steps) + 1))}
+            if own or samples_at(held, table).get("model") != called or (today := digest(room, called)) == made:
+                continue
+            key, what = f"{table}.model", room.removesuffix("s")
+            found = f'"{called}", of another source ({today}) than the archive\'s ({made})'
+            expected = f"the {what} that the archive was made with, or --set {key}={called}, where today's is meant"
+            if today is None:
+                found = f'"{called}", which is neither installed nor on SEALDYN_PATH'
+                expected = f"the {what} that the archive was made with (source {made})"
+            raise ScenarioError(name, key, found, expected)
 
 
 def _must_be_readable(path):
@@ -339,6 +371,10 @@ def with_values(scenario: Scenario, values: dict[str, Any]) -> Scenario:
             own = dict(zip(INERTIAL, body.inertia(), strict=True))
             if not any(f"{ring}.{key}" in values or tables[ring][key] != own[key] for key in INERTIAL):
                 tables[ring] = {key: held for key, held in tables[ring].items() if key not in INERTIAL} | {"body": body}
+    for ring in rings:
+        if load := tables[ring].get("load"):
+            made = ("samples",) if load.model is not None else ()
+            tables[ring]["load"] = {key: held for key, held in opened(load).items() if key not in made}
     if scenario.reading is not None:
         tables["rotor"]["runout"] = scenario.reading
     given = set(scenario.given)
@@ -349,7 +385,7 @@ def with_values(scenario: Scenario, values: dict[str, Any]) -> Scenario:
         table, _, last = key.rpartition(".")
         gone = {key, *(f"{table}.{other}" for other in variants.ALTERNATIVES.get(last, ()))}
         given = {k for k in given if k not in gone and not k.startswith(f"{key}.")}
-        given |= {*given_keys({key: as_written(value)})}
+        given |= {*given_keys({key: as_written(value)}, kind=kind_of(tables, name))}
     told = {key: value_of(value) for key, value in values.items() if isinstance(value, str)}
     bare = [key for key in scenario.bare if key not in told]
     bare += [key for step, value in told.items() for key in _bare_keys(value, step)]

@@ -4,11 +4,13 @@ import ast
 import dataclasses
 import inspect
 import re
+from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any
 
 from pydantic import TypeAdapter
 
+from ..scene.film import Film
 from .errors import diameters, table_in
 from .tables import ScenarioFile, film_choices
 
@@ -19,11 +21,10 @@ def json_schema(file: type = ScenarioFile) -> dict:
     The first line of a key's description is its meaning (the docstring below it in its class), the next what is
     expected; `quantity` and `unit` name what it holds."""
     schema = _without_null(TypeAdapter(file).json_schema())
-    if "Film" in schema["$defs"]:
-        schema["$defs"]["Film"]["properties"]["model"]["enum"] = film_choices()
-    for kind in _kinds(file):
-        table = schema if kind is file else schema["$defs"][kind.__name__]
+    for kind, table in {id(table): (kind, table) for kind, table in _tables(file, schema, schema["$defs"])}.values():
         keys = table["properties"]
+        if issubclass(kind, Film):
+            keys["model"]["enum"] = film_choices()
         for key, meaning in _meanings(kind).items():
             keys[key]["description"] = "\n".join([meaning, *filter(None, [keys[key].get("description")])])
         _add_diameters(table, kind)
@@ -60,16 +61,23 @@ def _add_diameters(table: dict, kind: type) -> None:
     table["required"] = [key for key in needed if key not in twins]
 
 
-def _kinds(kind: type) -> set[type]:
-    """The dataclass of every table, `kind` and all below it."""
-    below = [table_in(f.type) for f in dataclasses.fields(kind)]
-    return {kind}.union(*(_kinds(table) for table in below if table))
+def _tables(kind: type, table: dict, definitions: dict) -> Iterator[tuple[type, dict]]:
+    """The dataclass of every table and its schema, `kind` and all below it; one that stands in several places often."""
+    yield kind, table
+    for f in dataclasses.fields(kind):
+        if below := table_in(f.type):
+            # Of several dataclasses of one name a definition has a longer one.
+            place = re.search(r"#/\$defs/([^']+)", str(table["properties"][f.name]))
+            yield from _tables(below, definitions[place[1]], definitions)
 
 
 def _meanings(kind: type) -> dict[str, str]:
     """Docstring below each field of a dataclass; of the inherited ones too."""
     found = {}
     for part in filter(dataclasses.is_dataclass, reversed(kind.__mro__)):
+        if "found" in vars(part):
+            # Widened by the options of what comes from outside.
+            continue
         for key, text in pairwise(ast.parse(inspect.getsource(part)).body[0].body):
             if isinstance(key, ast.AnnAssign) and isinstance(text, ast.Expr):
                 found[key.target.id] = re.sub(r"\s*\n\s*", " ", text.value.value)

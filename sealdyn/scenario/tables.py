@@ -27,13 +27,16 @@ from .errors import (
     LIP_RULES,
     ScenarioError,
     explained,
+    scene_errors_of,
     tables,
     together,
     unknown_rules,
     without_indices,
 )
+from .loads import with_samples
 from .motion_files import with_columns
 from .overrides import SCHEMA, radius_key, refuse_newer, with_radii
+from .own_options import named_outside, with_default_options, with_options
 
 # Numbers in SI units beyond which nothing of this world is.
 SMALLEST, LARGEST = 1e-25, 1e15
@@ -111,7 +114,7 @@ def read_tables(
     told, without those on which no run hangs; `folder`, `held` and `bare` as of motion_files.py.
     Raises `ScenarioError`."""
     refuse_newer(raw, name)
-    kind = RadialFile if any(table in raw for table in RADIAL) else ScenarioFile
+    kind = kind_of(raw, name)
     wrong = [*_odd_numbers(raw, name, kind=kind)]
     raw, halved = with_radii(raw, kind, name, wrong)
     given = given_keys(raw, kind=kind) if given is None else (radius_key(kind, key) for key in given)
@@ -133,6 +136,9 @@ def read_tables(
     if wrong:
         # What the values are together is asked where each can be.
         raise together(wrong)
+    file = with_default_options(file, name, wrong)
+    if wrong:
+        raise together(wrong)
     file = dataclasses.replace(file, rotor=with_inertia(file.rotor), stator=with_inertia(file.stator))
     refuse_extremes(file, name)
     if impossible := _impossible(file):
@@ -141,9 +147,17 @@ def read_tables(
         raise together([ScenarioError(name, e.key, words, e.expected) for e, words in found])
     if "run.samples_per_turn" in given and not _turns(file.shaft.speed):
         raise ScenarioError(name, "run.samples_per_turn", "a shaft at rest", "[run] samples, the number in all")
-    scene = Scene(**{f.name: getattr(file, f.name) for f in dataclasses.fields(Scene)})
+    with scene_errors_of(name):
+        scene = with_samples(Scene(**{f.name: getattr(file, f.name) for f in dataclasses.fields(Scene)}), file.run)
     parts = {"run": file.run, "application": file.application, "study": file.study}
     return {"scene": scene, **parts, "given": given, "reading": reading}
+
+
+def kind_of(raw: dict, name: str) -> type:
+    """The dataclass of the tables `raw` of the scenario `name`, with options of what they take from outside.  Raises
+    ScenarioError."""
+    radial = any(table in raw for table in RADIAL)
+    return RadialFile if radial else with_options(ScenarioFile, named_outside(raw, name))
 
 
 def _radial(file: RadialFile | None, wrong: list[ScenarioError], name: str) -> dict[str, Any]:
@@ -310,6 +324,10 @@ def _run_and_study(raw: dict, name: str) -> Iterator[ScenarioError]:
     for study, settings in table_of(raw, "study").items():
         if not isinstance(settings, dict):
             yield ScenarioError(name, f"study.{study}", quoted(settings), "a table [study.NAME] of a study's settings")
+    for ring in RING_NAMES:
+        load = table_of(table_of(raw, ring), "load")
+        if "model" in load and "samples" in load:
+            yield ScenarioError(name, f"{ring}.load.samples", "samples and a model", "one of the two")
     raw.setdefault("run", {})
     run = table_of(raw, "run")
     for one, other in (("turns", "duration"), ("samples_per_turn", "samples")):

@@ -2,15 +2,16 @@
 
 import cmath
 import math
+from dataclasses import fields
 
 from ..numerics.piecewise_linear import PiecewiseLinear, initially, points
 from ..units import Temperature, Viscosity
 from .contact import contact_errors, contact_thresholds, film_in_words, limit_in_words
 from .excitation import ACCELERATIONS, MOTION_COLUMNS, acceleration_errors, random_errors, sample_errors
-from .film import aligned_gaps, coned, follows_speed, pads_errors, profile_errors, reynolds_errors
+from .film import Film, aligned_gaps, coned, follows_speed, pads_errors, profile_errors, reynolds_errors
 from .gas import GASES, gas_of
 from .liquid import heat_errors, liquid_errors
-from .loads import LOAD_COLUMNS
+from .loads import LOAD_COLUMNS, Load
 from .patterns import grooves_errors, grooves_of, waves_of, waviness_errors
 from .rings import RING_NAMES, body_errors, elastic_errors
 from .scene import SceneError
@@ -381,6 +382,12 @@ def turns_of(speed) -> float:
 RIGID_LEAVES = ("mass", "transverse_inertia", "polar_inertia", "body", "mass_centre", "unphysical_inertia", "load")
 
 
+def _others_options(table, kind: type) -> list[str]:
+    """Options from outside in a table of a `kind` that are not of its model."""
+    added = {f.name for f in fields(table)} - {f.name for f in fields(kind)}
+    return [name for name in added if name != table.model]
+
+
 def unused(scene, given: set[str]) -> list[str]:
     """Known keys, dotted and sorted, that were `given` (dotted) and that this scene does not use."""
     leaves = []
@@ -409,6 +416,9 @@ def unused(scene, given: set[str]) -> list[str]:
         leaves += [f"film.{name}." for name in ("gas_dam", "gas_reynolds") if scene.film.model not in (name, "auto")]
     if scene.film.model != "tabulated":
         leaves.append("film.tabulated.")
+    leaves += [f"film.{name}." for name in _others_options(scene.film, Film)]
+    for name, load in (("rotor", scene.rotor.load), ("stator", scene.stator.load)):
+        leaves += [f"{name}.load.{other}." for other in (_others_options(load, Load) if load is not None else ())]
     if scene.film.model != "linear":
         leaves.append("film.coefficients")
     elif scene.film.coefficients != "radial":

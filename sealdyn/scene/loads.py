@@ -68,6 +68,9 @@ class Load(Strict):
     """Tones of force and moment, in the axes of the housing."""
     samples: LoadSamples | None = None
     """Force and moments of a record, in the axes of the housing."""
+    model: str | None = None
+    """A load from outside by its name, smooth functions of time, which become `samples`; its options in a table of that
+    name."""
 
     def varying(self) -> tuple:
         """What may be a function of time."""

@@ -18,6 +18,7 @@ from ..faces.roughness import mean_film_cubed
 from ..numerics.piecewise_linear import initially, points
 from ..scenario.errors import tables, without_indices
 from ..scenario.overrides import radius_key
+from ..scenario.own_options import outside_of, with_options
 from ..scenario.reader import Scenario
 from ..scenario.tables import RadialFile, ScenarioFile
 from ..scene.contact import HALF_HEIGHT
@@ -312,7 +313,8 @@ def unit_warnings(scenario: Scenario) -> list[str]:
 
 def kind_of(scenario: Scenario) -> type:
     """The dataclass of a scenario's tables."""
-    return RadialFile if isinstance(scenario.scene, RadialScene) else ScenarioFile
+    radial = isinstance(scenario.scene, RadialScene)
+    return RadialFile if radial else with_options(ScenarioFile, outside_of(scenario.scene))
 
 
 def unusual(key: str, values: list[float], known: tuple[Quantity | None, Usual | None]) -> list[str]:

@@ -13,8 +13,6 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from .. import __version__
-from ..extensions import digest
-from ..films import own_film_names
 from ..kernel_cache import solvers_digest
 
 if TYPE_CHECKING:
@@ -27,6 +25,7 @@ from enum import StrEnum
 import numpy as np
 
 from ..scenario.errors import nearest_of
+from ..scenario.own_options import digests_of
 from ..scene.radial import RadialScene
 
 
@@ -41,14 +40,7 @@ def provenance(scenario) -> dict[str, Any]:
     """What every archive says of how it was made: versions, and of the scenario name, question and overrides."""
     return {"version": __version__, "solvers": solvers_digest(), "libraries": libraries(), "name": scenario.name,
             "question": scenario.question, "overrides": list(scenario.overrides),
-            **({"outside": outside} if (outside := _outside(scenario)) else {})}  # fmt: skip
-
-
-def _outside(scenario) -> dict[str, str]:
-    """Digest of the source of a scenario's film where that comes from outside."""
-    name = getattr(scenario.scene.film, "model", "") if hasattr(scenario.scene, "film") else ""
-    found = digest("films", name) if name not in own_film_names() else None
-    return {f"films/{name}": found} if found else {}
+            **({"outside": outside} if (outside := digests_of(scenario.scene)) else {})}  # fmt: skip
 
 
 @dataclass(frozen=True, repr=False)

@@ -59,11 +59,16 @@ class Info:
 
 def study_names() -> list[str]:
     """Names of the studies there are, those from outside too (extensions.py), hyphenated."""
-    here = {m.name for m in pkgutil.iter_modules(__path__) if m.name[0] != "_"}
+    here = {name for name in _in_folders() if name[0] != "_"}
     return sorted(name.replace("_", "-") for name in here | set(installed("studies")))
 
 
 def study_module(name: str) -> str:
     """Import path of a study called `name` (underscores)."""
-    here = {m.name for m in pkgutil.iter_modules(__path__)}
-    return f"{__name__}.{name}" if name in here else installed("studies")[name]
+    return f"{__name__}.{name}" if name in _in_folders() else installed("studies")[name]
+
+
+def _in_folders() -> set[str]:
+    """Names of the package's own files and of those on today's SEALDYN_PATH."""
+    __path__[:] = [*_OWN, *folders("studies")]
+    return {m.name for m in pkgutil.iter_modules(__path__)}

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..scenario.errors import ScenarioError, nearest_of
+from ..scenario.own_options import all_outside, with_options
 from ..scenario.schema import json_schema, table_schema
 from ..scenario.settings import study_settings
 from ..scenario.tables import RadialFile, ScenarioFile
@@ -111,7 +112,7 @@ def schema(radial: bool = False) -> dict[str, Any]:
     >>> "film" in sealdyn.schema()["properties"]
     True
     """
-    found = json_schema(RadialFile if radial else ScenarioFile)
+    found = json_schema(RadialFile if radial else with_options(ScenarioFile, all_outside()))
     tables = {name.replace("-", "_"): _table(name) for name in study_names()}
     study = found["properties"]["study"]
     told = {"type": "object", "properties": tables, "additionalProperties": False}

@@ -40,6 +40,8 @@ JSON schema (`sealdyn schema`), which editors read too.
   have them; missing samples are refused); SI without a unit.  Measured accelerations (`axial_acceleration`) are
   integrated twice, their drift removed.  `[stator.load.samples]` reads `force`, `moment_x`, `moment_y` likewise,
   `[film.tabulated]` `clearance`, `speed`, `k_axial_axial` and its like, or the archive of `sealdyn study coefficients`.
+- `[film.NAME]` and `[stator.load.NAME]` are the options of a film or a load of one's own ([own](own), and
+  [how](../sealdyn/README.md#films-loads-and-studies-of-ones-own)).
 - A number without a unit that no seal has, in SI, is told by `check` and by every run, with what it may have meant.
 - The arrangement follows from the supports: a table `[stator.support]` makes the stator float (FMS), `[rotor.support]`
   the rotor (FMR), both make both float (FMSR).

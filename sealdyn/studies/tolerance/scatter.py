@@ -12,6 +12,7 @@ from scipy.stats import binomtest, norm, qmc, spearmanr, truncnorm, uniform
 from ...quantities import everyday
 from ...scenario.errors import ScenarioError, diameters, nearest, nearest_of, tables, without_indices
 from ...scenario.overrides import radius_key
+from ...scenario.own_options import outside_of, with_options
 from ...scene import variants
 from ...scene.scene import Scene
 from ...units import Length, Quantity, QuantityError, quantity_of, quoted
@@ -90,16 +91,21 @@ class _Entry:
             law = truncnorm((low - centre) / sigma, (high - centre) / sigma, centre, sigma)
         return Scatter(self.key, law, centre, self.quantity.unit if self.quantity else "", self.words)
 
+    def _kind(self) -> type:
+        """The dataclass of the scene, with options from outside."""
+        return with_options(Scene, outside_of(self.scenario.scene))
+
     def _quantity(self) -> Quantity | None:
         """What the key holds; None for a plain number.  Raises ScenarioError if it is no key, or no number."""
         table, _, last = self.key.rpartition(".")
-        known = {table: keys | diameters(keys) for table, keys in tables(Scene).items()}
+        kind = self._kind()
+        known = {table: keys | diameters(keys) for table, keys in tables(kind).items()}
         if last not in known.get(without_indices(table), {}):
             # Of a table that there is not, and a key that none has: which tables there are.
             strange = without_indices(table) not in known and not any(last in keys for keys in known.values())
-            hint = f"the tables are {', '.join(known[''])}" if strange else nearest(Scene, table, last)
+            hint = f"the tables are {', '.join(known[''])}" if strange else nearest(kind, table, last)
             raise self.wrong(f"an unknown key {self.key}", f"a key of the scene; {hint}")
-        last = radius_key(Scene, self.key).rpartition(".")[2]
+        last = radius_key(kind, self.key).rpartition(".")[2]
         try:
             owner = variants.part(self.scenario.scene, table) if table else self.scenario.scene
             kind = typing.get_type_hints(type(owner), include_extras=True)[last]
@@ -145,7 +151,7 @@ class _Entry:
         return centre - width, centre + width, centre, width / SIGMAS
 
     def _own(self) -> float:
-        radius = radius_key(Scene, self.key)
+        radius = radius_key(self._kind(), self.key)
         value = variants.part(self.scenario.scene, radius)
         if not isinstance(value, int | float):
             found = "no value" if value is None else "a function of time"
