@@ -33,7 +33,6 @@ from .errors import (
     unknown_rules,
     without_indices,
 )
-from .loads import with_samples
 from .motion_files import with_columns
 from .overrides import SCHEMA, radius_key, refuse_newer, with_radii
 from .own_options import named_outside, with_default_options, with_options
@@ -147,8 +146,13 @@ def read_tables(
         raise together([ScenarioError(name, e.key, words, e.expected) for e, words in found])
     if "run.samples_per_turn" in given and not _turns(file.shaft.speed):
         raise ScenarioError(name, "run.samples_per_turn", "a shaft at rest", "[run] samples, the number in all")
-    with scene_errors_of(name):
-        scene = with_samples(Scene(**{f.name: getattr(file, f.name) for f in dataclasses.fields(Scene)}), file.run)
+    scene = Scene(**{f.name: getattr(file, f.name) for f in dataclasses.fields(Scene)})
+    if any(load is not None and load.model is not None for load in (scene.stator.load, scene.rotor.load)):
+        # Loaded where there is something to sample.
+        from .loads import with_samples
+
+        with scene_errors_of(name):
+            scene = with_samples(scene, file.run)
     parts = {"run": file.run, "application": file.application, "study": file.study}
     return {"scene": scene, **parts, "given": given, "reading": reading}
 
