@@ -28,7 +28,7 @@ from .errors import (
     refuse_unbounded,
     refuse_unreadable,
 )
-from .motion_files import PLACES, refuse_files_elsewhere, whole_file
+from .motion_files import PLACES, held_columns, quantities_of_files, whole_file
 from .overrides import (
     as_written,
     key_and_words,
@@ -40,7 +40,7 @@ from .overrides import (
     value_of,
     without_arrays,
 )
-from .tables import Run, given_keys, read_tables, table_of
+from .tables import Run, given_keys, kind_of, read_tables, table_of
 
 __all__ = [
     "Run",
@@ -125,15 +125,19 @@ class Scenario:
         raw = _toml(self.text, self.name)
         for override in self.overrides:
             override_key(raw, override, self.name)
-        for key, samples in self.motions().items():
+        columns, held = self.motions(), self.resolved()
+        for key in (*columns, *quantities_of_files(raw, kind_of(raw))):
             # Whole without the file, which is looked for from somewhere else then.
-            *path, last = key.split(".")
-            functools.reduce(operator.getitem, path, raw)[last] = samples
+            *path, last = (int(step) if step.isdigit() else step for step in key.split("."))
+            of_scene = functools.reduce(operator.getitem, path, held)[last]
+            functools.reduce(operator.getitem, path, raw)[last] = columns.get(key, of_scene)
         return raw
 
     def to_toml(self) -> str:
         """Its text as a file has it; with overrides the tables are written anew, below the head of the file."""
-        anew = self.overrides or any("file" in motion for motion in self.motions().values())
+        raw = _toml(self.text, self.name)
+        files = any("file" in motion for motion in self.motions().values()) or quantities_of_files(raw, kind_of(raw))
+        anew = self.overrides or files
         return text_of(self.to_dict(), self.name, self.question) if anew else self.text
 
     def motions(self) -> dict[str, dict[str, Any]]:
@@ -241,7 +245,7 @@ def parse_scenario(
         override_key(raw, override, name)
     refuse_unbounded(raw, name)
     if held is not None:
-        refuse_files_elsewhere(raw, name, held, asked)
+        held = held_columns(raw, kind_of(raw), name, held, asked)
     bare = frozenset(_bare_keys(raw))
     gauge = frozenset(f"film.{key}" for key, value in table_of(raw, "film").items() if is_gauge(value))
     unsaid: list[str] = []

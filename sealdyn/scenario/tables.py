@@ -111,12 +111,12 @@ def read_tables(
     told, without those on which no run hangs; `folder`, `held` and `bare` as of motion_files.py.
     Raises `ScenarioError`."""
     refuse_newer(raw, name)
-    kind = RadialFile if any(table in raw for table in RADIAL) else ScenarioFile
+    kind = kind_of(raw)
     wrong = [*_odd_numbers(raw, name, kind=kind)]
     raw, halved = with_radii(raw, kind, name, wrong)
     given = given_keys(raw, kind=kind) if given is None else (radius_key(kind, key) for key in given)
     given = frozenset(key for key in given if key.partition(".")[0] not in BESIDE_THE_RUN)
-    raw = with_columns(raw, name, folder, held or {}, wrong, [] if bare is None else bare)
+    raw = with_columns(raw, kind, name, folder, held or {}, wrong, [] if bare is None else bare)
     reading = _total_indicator_reading(raw)
     _tilt_of_tir(raw)
     wrong += [*_run_and_study(raw, name)]
@@ -144,6 +144,11 @@ def read_tables(
     scene = Scene(**{f.name: getattr(file, f.name) for f in dataclasses.fields(Scene)})
     parts = {"run": file.run, "application": file.application, "study": file.study}
     return {"scene": scene, **parts, "given": given, "reading": reading}
+
+
+def kind_of(raw: dict) -> type:
+    """Which kind of scenario file these tables are."""
+    return RadialFile if any(table in raw for table in RADIAL) else ScenarioFile
 
 
 def _radial(file: RadialFile | None, wrong: list[ScenarioError], name: str) -> dict[str, Any]:
