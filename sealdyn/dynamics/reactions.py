@@ -15,15 +15,20 @@ from ..faces.geometry import CONTACT_FORCE, CONTACT_X, CONTACT_Y, FORCE, MOMENT_
 from . import equations
 from .imposed_motion import OWN_X, OWN_Y, PER_RING, TILT_X, TILT_X_RATE, TILT_Y, TILT_Y_RATE, Z_RATE, Z
 from .intervals import constant_and_slope
-from .signals import Samples, closing_force
 
 # In the order of the rings.
 CARRIERS = ("housing", "shaft")
-PARTS = {"force": "N", "moment_x": "N m", "moment_y": "N m"}
+# Unit, what it is.
+PARTS = {
+    "force": ("N", "axial force"),
+    "moment_x": ("N m", "moment about the x axis"),
+    "moment_y": ("N m", "moment about the y axis"),
+}
 
 
-def reactions(at: Samples) -> dict[str, np.ndarray]:
-    """Force (N) along z and moments (N m) about x and y, each (m,), on "shaft" and "housing" at `Samples`."""
+def reactions(at) -> dict[str, np.ndarray]:
+    """Force (N) along z and moments (N m) about x and y, each (m,), on "shaft" and "housing" at the Samples of
+    signals.py."""
     found = {}
     for k, carrier in enumerate(CARRIERS):
         parts = _through_support(at, k) if at.segment.model.unknowns.floats[k] else _of_film(at, k)
@@ -34,7 +39,7 @@ def reactions(at: Samples) -> dict[str, np.ndarray]:
 def _of_film(at, k):
     """Force and moments on a ring that is rigid with its carrier."""
     sign, gap = 1.0 if k == 0 else -1.0, at.gap
-    force = gap[:, FORCE] + gap[:, CONTACT_FORCE] - closing_force(at)
+    force = gap[:, FORCE] + gap[:, CONTACT_FORCE] - at.closing_force
     return sign * force, sign * (gap[:, MOMENT_X] + gap[:, CONTACT_X]), sign * (gap[:, MOMENT_Y] + gap[:, CONTACT_Y])
 
 

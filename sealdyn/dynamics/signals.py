@@ -38,7 +38,7 @@ from ..quantities import everyday
 from ..scene.film import coning_varies
 from ..scene.gas import density_of
 from ..scene.rings import RING_NAMES
-from . import equations
+from . import equations, reactions
 from .intervals import constant_and_slope, modulo_turn
 from .native import Value, load_value, states_along, thinnest_value
 
@@ -73,6 +73,18 @@ class Samples:
     def torque(self) -> np.ndarray:
         """Friction torque (m,), in N m, of film and contact on the rotor."""
         return self.gap[:, TORQUE] + self.gap[:, CONTACT_TORQUE]
+
+    @cached_property
+    def closing_force(self) -> np.ndarray:
+        """Closing force (m,), in N."""
+        model = self.segment.model
+        closing = model.closing.over(self.segment.interval, model.scene.film)
+        return closing[0] + closing[1] * self.taus
+
+    @cached_property
+    def reactions(self) -> dict[str, np.ndarray]:
+        """Force (N) and moments (N m), each (m,), of the seal on housing and shaft."""
+        return reactions.reactions(self)
 
 
 @dataclass(frozen=True)
@@ -111,13 +123,6 @@ def _shaft_angle(at):
     return np.mod(turned + at.taus * (speed + 0.5 * slope * at.taus), 2 * np.pi)
 
 
-def closing_force(at: Samples) -> np.ndarray:
-    """Closing force (m,), in N."""
-    model = at.segment.model
-    closing = model.closing.over(at.segment.interval, model.scene.film)
-    return closing[0] + closing[1] * at.taus
-
-
 def _leakage(slot):
     # Flow in +r runs from high to low pressure while the pressure inside is the higher one.
     return lambda at: np.where(at.gap[:, OUTER_PRESSURE] >= at.gap[:, INNER_PRESSURE], -1.0, 1.0) * at.gap[:, slot]
@@ -143,7 +148,7 @@ SHAFT_AND_FILM = (
     Signal("film_force", "N", "opening force of the film", _gap(FORCE), tallied=True),
     Signal("film_moment_x", "N m", "film moment on the stator about the x axis", _gap(MOMENT_X)),
     Signal("film_moment_y", "N m", "film moment on the stator about the y axis", _gap(MOMENT_Y)),
-    Signal("closing_force", "N", "closing force", closing_force, tallied=True),
+    Signal("closing_force", "N", "closing force", lambda at: at.closing_force, tallied=True),
     Signal("leakage_inner", "m^3/s", "leakage at the inner radius, from high to low pressure", _leakage(FLOW_INNER),
            tallied=True),
     Signal("leakage_outer", "m^3/s", "leakage at the outer radius, from high to low pressure", _leakage(FLOW_OUTER),
@@ -163,6 +168,12 @@ CONTACT = (
     Signal("contact_pressure", "Pa", "largest contact pressure", _gap(CONTACT_PRESSURE), tallied=True),
     Signal("wear_rate", "m/s", "wear depth rate of both faces, mean over the face", _gap(WEAR), "wear_rate",
            tallied=True),
+)  # fmt: skip
+REACTIONS = tuple(
+    Signal(f"{carrier}_{part}", unit, f"{what} of the seal on the {carrier}",
+           lambda at, name=f"{carrier}_{part}": at.reactions[name])
+    for carrier in reactions.CARRIERS
+    for part, (unit, what) in reactions.PARTS.items()
 )  # fmt: skip
 # Of faces whose coning changes.
 CONED = (
@@ -216,7 +227,7 @@ def _table(floats, orders, touching, coned, seals):
         table += _of_ring(RING_NAMES[k], SEAL, equations.SEALS + equations.PER_SEAL * k)
         words = f"1 while the {RING_NAMES[k]} sticks on its secondary seal, or the share of its friction that does"
         table.append(Signal(f"{RING_NAMES[k]}_seal_stuck", "1", words, partial(_stuck, k)))
-    return (*table, *SHAFT_AND_FILM)
+    return (*table, *REACTIONS, *SHAFT_AND_FILM)
 
 
 def _stuck(k, at):
