@@ -29,7 +29,9 @@ from ..faces.geometry import (
     ORDER_LIST,
     ORDERS,
     OUTER_PRESSURE,
+    ROTOR_ANGLE,
     SPIN_DIFFERENCE,
+    STATOR_ANGLE,
     TORQUE,
     WEAR,
 )
@@ -38,7 +40,8 @@ from ..quantities import everyday
 from ..scene.film import coning_varies
 from ..scene.gas import density_of
 from ..scene.rings import RING_NAMES
-from . import equations, reactions
+from . import equations
+from .imposed_motion import OWN_X, OWN_Y, PER_RING, TILT_X, TILT_X_RATE, TILT_Y, TILT_Y_RATE, Z_RATE, Z
 from .intervals import constant_and_slope, modulo_turn
 from .native import Value, load_value, states_along, thinnest_value
 
@@ -84,7 +87,7 @@ class Samples:
     @cached_property
     def reactions(self) -> dict[str, np.ndarray]:
         """Force (N) and moments (N m), each (m,), of the seal on housing and shaft."""
-        return reactions.reactions(self)
+        return reactions(self)
 
 
 @dataclass(frozen=True)
@@ -169,11 +172,18 @@ CONTACT = (
     Signal("wear_rate", "m/s", "wear depth rate of both faces, mean over the face", _gap(WEAR), "wear_rate",
            tallied=True),
 )  # fmt: skip
+# What carries each ring.
+CARRIERS = ("housing", "shaft")
+REACTION_PARTS = {
+    "force": ("N", "axial force"),
+    "moment_x": ("N m", "moment about the x axis"),
+    "moment_y": ("N m", "moment about the y axis"),
+}
 REACTIONS = tuple(
     Signal(f"{carrier}_{part}", unit, f"{what} of the seal on the {carrier}",
            lambda at, name=f"{carrier}_{part}": at.reactions[name])
-    for carrier in reactions.CARRIERS
-    for part, (unit, what) in reactions.PARTS.items()
+    for carrier in CARRIERS
+    for part, (unit, what) in REACTION_PARTS.items()
 )  # fmt: skip
 # Of faces whose coning changes.
 CONED = (
@@ -235,6 +245,54 @@ def _stuck(k, at):
     if ring[equations.SEAL_AT]:
         return 1.0 - at.scratch[:, equations.SEALS + equations.PER_SEAL * k + equations.SEAL_EXCESS]
     return np.full(len(at.taus), ring[equations.STUCK])
+
+
+def reactions(at: Samples) -> dict[str, np.ndarray]:
+    """What the seal does to shaft and housing: force (N) along z and moments (N m) about x and y, each (m,), of the
+    ring that each carries, by its springs, dampers and secondary seal, or of the film itself on a ring that is rigid:
+
+        on a carrier of a floating ring   K (z - z_c) + D (z' - z_c') - friction,  and of the tilts the same
+        on a rigid one                    +-(film + contact - closing force),  +-(moments of film and contact)
+
+    **Source** the supports of equations.py, seen from their other end.
+    **Valid** beside the steady thrust of closing force and film, which balance each other at rest; inertia and weight
+    of a rigid ring are the carrier's own."""
+    found = {}
+    for k, carrier in enumerate(CARRIERS):
+        parts = _through_support(at, k) if at.segment.model.unknowns.floats[k] else _of_film(at, k)
+        found |= {f"{carrier}_{name}": part for name, part in zip(REACTION_PARTS, parts, strict=True)}
+    return found
+
+
+def _of_film(at, k):
+    """Force and moments on a ring that is rigid with its carrier."""
+    sign, gap = 1.0 if k == 0 else -1.0, at.gap
+    force = gap[:, FORCE] + gap[:, CONTACT_FORCE] - at.closing_force
+    return sign * force, sign * (gap[:, MOMENT_X] + gap[:, CONTACT_X]), sign * (gap[:, MOMENT_Y] + gap[:, CONTACT_Y])
+
+
+def _through_support(at, k):
+    """Force and moments through the support and the secondary seal of ring k."""
+    ring = at.segment.p[equations.RING * k : equations.RING * (k + 1)]
+    own, carrier, seal = equations.OWN_STATE + 6 * k, PER_RING * k, equations.SEALS + equations.PER_SEAL * k
+    scene, w = at.segment.model.scene, at.scratch
+    speed, slope = constant_and_slope((scene.stator, scene.shaft)[k].speed, at.segment.interval)
+    spin = speed + slope * at.taus
+
+    def apart(part):
+        return w[:, own + part] - w[:, carrier + part]
+
+    d_x, d_y = apart(TILT_X), apart(TILT_Y)
+    e_x, e_y = d_x - w[:, carrier + OWN_X], d_y - w[:, carrier + OWN_Y]
+    twice = 2.0 * (at.gap[:, STATOR_ANGLE if k == 0 else ROTOR_ANGLE] + ring[equations.AXIS])
+    uneven, cos, sin = ring[equations.UNEVEN_K], np.cos(twice), np.sin(twice)
+    stiffness, damping = ring[equations.TILT_K], ring[equations.TILT_D]
+    force = ring[equations.AXIAL_K] * apart(Z) + ring[equations.AXIAL_D] * apart(Z_RATE)
+    moment_x = stiffness * e_x + uneven * (cos * e_x + sin * e_y) + damping * (apart(TILT_X_RATE) + spin * d_y)
+    moment_y = stiffness * e_y + uneven * (sin * e_x - cos * e_y) + damping * (apart(TILT_Y_RATE) - spin * d_x)
+    if ring[equations.SEAL_LINE] == 0.0:
+        return force, moment_x, moment_y
+    return force - w[:, seal], moment_x - w[:, seal + 1], moment_y - w[:, seal + 2]
 
 
 def _of_ring(ring, parts, first):

@@ -267,20 +267,16 @@ def table_lines(table: Mapping) -> list[str]:
     if not columns:
         return []
     lines = ["  ".join(cells).rstrip() for cells in zip(*columns, strict=True)]
-    return lines + ([f"({len(rows)} rows in the archive)"] if _step(rows) > 1 else [])
+    return lines + ([f"({len(rows)} rows in the archive)"] if len(rows) > MOST_ROWS else [])
 
 
-def _step(rows) -> int:
-    """Of how many rows one is printed."""
-    return -(-len(rows) // MOST_ROWS)
-
-
-def table_columns(table: Mapping) -> list[list[str]]:
-    """The columns of such a table that are printed, each a heading and cells of equal width."""
+def table_columns(table: Mapping, most: int = MOST_ROWS) -> list[list[str]]:
+    """The columns of such a table that are printed, each a heading and cells of equal width; of more than `most` rows
+    every second, third ..."""
     rows = table["rows"]
     if not rows:
         return []
-    step = _step(rows)
+    step = -(-len(rows) // most)
     printed = [*rows[:-1:step], rows[-1]]
     held = [one["quantity"] for one in table.get("of_rows", ())]
     held = [*held[:-1:step], *held[-1:]]
