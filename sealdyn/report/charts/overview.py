@@ -27,7 +27,7 @@ FAR = 4.0
 BRIEF = 0.1
 # Name of a row, and what stands in it: key of the summary, quantity, digits, words after it.
 NUMBERS = (
-    ("smallest film", ("h_min.value", "m", 4, ""), ("h_min.of_clearance", "share", 3, " of clearance")),
+    ("smallest film", ("h_min.value", "h_min", 4, ""), ("h_min.of_clearance", "share", 3, " of clearance")),
     ("tilt max / min / mean", *((f"relative_misalignment.{k}", "misalignment", 3, "") for k in ("max", "min", "mean"))),
     ("steady max / min", *((f"relative_misalignment.steady_{k}", "misalignment", 4, "") for k in ("max", "min"))),
     ("closed form max / min", *((f"closed_form.relative_{k}", "misalignment", 4, "") for k in ("max", "min"))),

@@ -7,8 +7,8 @@ from itertools import takewhile
 import numpy as np
 
 from ...archive import column, read_info
-from ...quantities import by_size, everyday, factor_of
-from ..text import question_of
+from ...quantities import by_size, everyday, factor_of, printed
+from ..text import question_of, written_units
 
 BLOCK = 1 << 16
 POINTS = 20_000
@@ -31,6 +31,7 @@ class Run:
         self.rows, self.summary, self.status = self.info["rows"], self.info["summary"], self.info["status"]
         self.message = self.info.get("message", "")
         self.resolved = self.info["resolved"]
+        self.written = written_units(self.info)
         self._sizes: dict[tuple[str, int], float] = {}
 
     def has(self, *names: str) -> bool:
@@ -45,13 +46,23 @@ class Run:
         """The unit that people read a series in from row `first` on, and how many of it make one SI unit: what the
         archive says, the everyday one by size, by default the largest.  Both components of a tilt have one unit."""
         series = self.info["series"][name]
-        shown = series.display_unit or series.units, series.display_factor
-        return by_size(series.units, *shown, self.largest(name, first) if size is None else size)
+        return self._shown(series) or by_size(
+            series.units, series.display_unit or series.units, series.display_factor,
+            self.largest(name, first) if size is None else size,
+        )  # fmt: skip
 
     def field_shown(self, name: str, size: float) -> tuple[str, float]:
         """The same of a field over the face or around the shaft of a `size` (SI)."""
         field = self.info["fields"][name]
-        return by_size(field.units, field.display_unit or field.units, field.display_factor, size)
+        return self._shown(field) or by_size(field.units, field.display_unit or field.units, field.display_factor, size)
+
+    def _shown(self, held) -> tuple[str, float] | None:
+        """The unit that the scenario has for what a series or field is, where its everyday one is not that."""
+        like = {"m": "clearance", "rad": "tilt", "Pa": "pressure"}.get(held.units)
+        unit = self.written.get(like)
+        if unit is None or held.display_unit != everyday(held.units)[0]:
+            return None
+        return printed(unit), factor_of(held.units, unit)
 
     def largest(self, name: str, first: int = 0) -> float:
         """Largest magnitude of a series (SI), or of both components of a tilt."""
