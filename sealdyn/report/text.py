@@ -73,7 +73,7 @@ def written_units(info: dict) -> dict[str, str]:
     scenario or command line has them so, else in "rad/s"; pressures, clearances, radii and tilts as they are written,
     where that is no unit of those by size."""
     words = "\n".join([info.get("scenario") or "", *map(str, info.get("overrides") or [])])
-    found, rpm = {}, False
+    rpm, found = False, dict[str, str]()
     for key, unit in WRITTEN.findall(words):
         si, names = READ_LIKE[key]
         rpm = rpm or unit == "rpm"

@@ -210,7 +210,7 @@ def _thinnest_place(ax, angle, radius) -> None:
 
 
 def _when(run: Run, row: int) -> str:
-    return f"turn {run.progress[row]:.4g}" if run.turning else f"{run.progress[row]:.4g} ms"
+    return f"turn {run.progress[row]:.4g}" if run.turning else f"{run.progress[row]:.4g} {run.progress_unit}"
 
 
 def scale(over) -> Normalize:

@@ -51,7 +51,7 @@ NORMAL = " (0 °C, 1.01325 bar)"
 @look()
 def draw(archive_path, out_path, turns: float = 4.0):
     """Everything on one sheet; the enlarged panels show the last `turns` turns."""
-    run = Run(archive_path)
+    run = Run(archive_path, over_time=True)
     if is_radial(run.info):
         return followers.draw(archive_path, out_path, turns)
     first, tilts, moves = run.last(turns), _tilts(run), spectrum.has_orders(run)
@@ -147,10 +147,10 @@ def film_panel(ax, run: Run, first: int) -> None:
 
 def _speed(run: Run, top: float) -> list[Series]:
     """A shaft speed that varies, from 0 to the `top`: its ends are in its name, an axis has no room here."""
-    x, speed = run.envelope("shaft_speed") if run.has("shaft_speed") else ((), np.zeros(1))
-    low, high = speed.min(), speed.max()
-    if not high - low > 1e-9 * max(high, -low):
+    if not run.varies:
         return []
+    x, speed = run.envelope("shaft_speed")
+    low, high = speed.min(), speed.max()
     with reading_in(written_units(run.info)):
         words = f"shaft speed, {in_words('speed', low)} to {in_words('speed', high)}"
     low, high = min(low, 0.0), max(high, 0.0)
