@@ -7,7 +7,7 @@ import shlex
 import sys
 from importlib import import_module
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 from typer.core import TyperCommand
@@ -327,6 +327,7 @@ def show(
     csv: Annotated[bool, typer.Option("--csv", help="all series, or a table of a study, to standard output")] = False,
     mat: Annotated[Path | None, typer.Option("--mat", help="MATLAB file to write them to")] = None,
     table: Annotated[str | None, typer.Option(help="which table of a study, as --csv has it or for --mat")] = None,
+    units: Annotated[Literal["si", "read"], typer.Option(help="of --csv: SI, or as people read them, um, ml/h")] = "si",
     as_json: AsJson = False,
 ):
     """Say what an archive holds; works while a run writes it."""
@@ -337,14 +338,14 @@ def show(
         raise Stop(Status.INVALID, f'--mat: found "{mat}"; expected a file name ending in .mat')
     with reads(file):
         if is_study(file):
-            return _show_study(file, csv, mat, as_json, table)
+            return _show_study(file, csv, mat, as_json, table, units)
         if table is not None:
             raise Stop(Status.INVALID, f"--table: found {table!r}; expected nothing, {file} is the archive of a run")
         info = read_info(file)
         if mat is not None:
             _write_mat(mat, {name: column(file, name) for name in ("time", *info["series"])}, "series of the run")
         elif csv:
-            for row in csv_rows(info, lambda name, rows: column(file, name, rows)):
+            for row in csv_rows(info, lambda name, rows: column(file, name, rows), units == "read"):
                 say(row, cells=True)
         elif as_json:
             names = ("status", "message", "rows", "summary", "scenario", "version", "libraries", "events")
@@ -354,10 +355,10 @@ def show(
                 say(line)
 
 
-def _show_study(file, csv, mat, as_json, table):
+def _show_study(file, csv, mat, as_json, table, units):
     """The answer of a study; a table of it for other programs."""
     from .archive import answer_tables, read_study
-    from .report.text import csv_lines, study_lines, tables_line
+    from .report.text import as_read, csv_lines, study_lines, tables_line
 
     study = read_study(file)
     answer = study["answer"]
@@ -367,7 +368,8 @@ def _show_study(file, csv, mat, as_json, table):
         plain = {key.split(" [")[0].replace(".", "_"): values for key, values in columns.items()}
         _write_mat(mat, plain, f"columns of the table {name}, units as --csv has them")
     elif csv or table is not None:
-        for line in csv_lines(_table_of(file, study, table)[1]):
+        columns = _table_of(file, study, table)[1]
+        for line in csv_lines(as_read(columns) if units == "read" else columns):
             say(line, cells=True)
     elif as_json:
         print(json.dumps(answer))

@@ -19,6 +19,8 @@ from types import ModuleType
 
 # And the package of each.
 ROOMS = {"films": "films", "loads": "scenario.loads", "studies": "studies"}
+# Tables of a scenario whose `model` may be one, and its room.
+OUTSIDE = {"film": "films", "stator.load": "loads", "rotor.load": "loads"}
 VARIABLE = "SEALDYN_PATH"
 
 

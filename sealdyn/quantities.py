@@ -50,6 +50,12 @@ SIZES = {
 
 # SI unit -> unit of a series of any size: what archives say.
 EVERYDAY = {"m": "um", "rad": "urad", "m/s": "mm/s", "m^3/s": "ml/h", "kg/s": "g/h", "Pa": "MPa"}
+# Units that people write, beside those of SIZES: how many make one of SI.
+WRITTEN = {
+    "m": {"mil": 1e3 / 0.0254, "in": 1 / 0.0254, "uin": 1e6 / 0.0254, "inch": 1 / 0.0254},
+    "rad": {"deg": DEGREES, "arcmin": 60 * DEGREES, "arcsec": 3600 * DEGREES},
+    "Pa": {"kPa": 1e-3, "MPa": 1e-6, "psi": 0.0254**2 / (0.45359237 * 9.80665), "atm": 1 / 101325},
+}
 # As print has it, in place of what a terminal shows.
 PRINT = ((re.compile(r"\bu(m|rad|s)\b"), r"µ\1"), (re.compile(r" deg\b"), "°"), (re.compile(r"\^2\b"), "²"),
          (re.compile(r"\^3\b"), "³"))  # fmt: skip
@@ -189,7 +195,13 @@ def factor_of(unit: str, shown: str) -> float | None:
         return 1.0
     sized = {name: factor for _, name, factor in SIZES.get(unit, ())}
     named = {held.shown: held.factor for held in QUANTITIES.values() if held.unit == unit and held.shown}
-    return (sized | named).get(shown)
+    return (WRITTEN.get(unit, {}) | sized | named).get(shown)
+
+
+def written_alone(unit: str, shown: str) -> bool:
+    """Whether somebody who writes an SI `unit` as `shown` wants to read all of them so: a unit other than those by
+    size."""
+    return shown in WRITTEN.get(unit, {})
 
 
 def number(value: float | None, factor: float = 1.0, digits: int = 4) -> str:

@@ -29,7 +29,9 @@ from ..faces.geometry import (
     ORDER_LIST,
     ORDERS,
     OUTER_PRESSURE,
+    ROTOR_ANGLE,
     SPIN_DIFFERENCE,
+    STATOR_ANGLE,
     TORQUE,
     WEAR,
 )
@@ -39,6 +41,7 @@ from ..scene.film import coning_varies
 from ..scene.gas import density_of
 from ..scene.rings import RING_NAMES
 from . import equations
+from .imposed_motion import OWN_X, OWN_Y, PER_RING, TILT_X, TILT_X_RATE, TILT_Y, TILT_Y_RATE, Z_RATE, Z
 from .intervals import constant_and_slope, modulo_turn
 from .native import Value, load_value, states_along, thinnest_value
 
@@ -73,6 +76,18 @@ class Samples:
     def torque(self) -> np.ndarray:
         """Friction torque (m,), in N m, of film and contact on the rotor."""
         return self.gap[:, TORQUE] + self.gap[:, CONTACT_TORQUE]
+
+    @cached_property
+    def closing_force(self) -> np.ndarray:
+        """Closing force (m,), in N."""
+        model = self.segment.model
+        closing = model.closing.over(self.segment.interval, model.scene.film)
+        return closing[0] + closing[1] * self.taus
+
+    @cached_property
+    def reactions(self) -> dict[str, np.ndarray]:
+        """Force (N) and moments (N m), each (m,), of the seal on housing and shaft."""
+        return reactions(self)
 
 
 @dataclass(frozen=True)
@@ -111,13 +126,6 @@ def _shaft_angle(at):
     return np.mod(turned + at.taus * (speed + 0.5 * slope * at.taus), 2 * np.pi)
 
 
-def closing_force(at: Samples) -> np.ndarray:
-    """Closing force (m,), in N."""
-    model = at.segment.model
-    closing = model.closing.over(at.segment.interval, model.scene.film)
-    return closing[0] + closing[1] * at.taus
-
-
 def _leakage(slot):
     # Flow in +r runs from high to low pressure while the pressure inside is the higher one.
     return lambda at: np.where(at.gap[:, OUTER_PRESSURE] >= at.gap[:, INNER_PRESSURE], -1.0, 1.0) * at.gap[:, slot]
@@ -143,7 +151,7 @@ SHAFT_AND_FILM = (
     Signal("film_force", "N", "opening force of the film", _gap(FORCE), tallied=True),
     Signal("film_moment_x", "N m", "film moment on the stator about the x axis", _gap(MOMENT_X)),
     Signal("film_moment_y", "N m", "film moment on the stator about the y axis", _gap(MOMENT_Y)),
-    Signal("closing_force", "N", "closing force", closing_force, tallied=True),
+    Signal("closing_force", "N", "closing force", lambda at: at.closing_force, tallied=True),
     Signal("leakage_inner", "m^3/s", "leakage at the inner radius, from high to low pressure", _leakage(FLOW_INNER),
            tallied=True),
     Signal("leakage_outer", "m^3/s", "leakage at the outer radius, from high to low pressure", _leakage(FLOW_OUTER),
@@ -163,6 +171,19 @@ CONTACT = (
     Signal("contact_pressure", "Pa", "largest contact pressure", _gap(CONTACT_PRESSURE), tallied=True),
     Signal("wear_rate", "m/s", "wear depth rate of both faces, mean over the face", _gap(WEAR), "wear_rate",
            tallied=True),
+)  # fmt: skip
+# What carries each ring.
+CARRIERS = ("housing", "shaft")
+REACTION_PARTS = {
+    "force": ("N", "axial force"),
+    "moment_x": ("N m", "moment about the x axis"),
+    "moment_y": ("N m", "moment about the y axis"),
+}
+REACTIONS = tuple(
+    Signal(f"{carrier}_{part}", unit, f"{what} of the seal on the {carrier}",
+           lambda at, name=f"{carrier}_{part}": at.reactions[name])
+    for carrier in CARRIERS
+    for part, (unit, what) in REACTION_PARTS.items()
 )  # fmt: skip
 # Of faces whose coning changes.
 CONED = (
@@ -216,7 +237,7 @@ def _table(floats, orders, touching, coned, seals):
         table += _of_ring(RING_NAMES[k], SEAL, equations.SEALS + equations.PER_SEAL * k)
         words = f"1 while the {RING_NAMES[k]} sticks on its secondary seal, or the share of its friction that does"
         table.append(Signal(f"{RING_NAMES[k]}_seal_stuck", "1", words, partial(_stuck, k)))
-    return (*table, *SHAFT_AND_FILM)
+    return (*table, *REACTIONS, *SHAFT_AND_FILM)
 
 
 def _stuck(k, at):
@@ -224,6 +245,54 @@ def _stuck(k, at):
     if ring[equations.SEAL_AT]:
         return 1.0 - at.scratch[:, equations.SEALS + equations.PER_SEAL * k + equations.SEAL_EXCESS]
     return np.full(len(at.taus), ring[equations.STUCK])
+
+
+def reactions(at: Samples) -> dict[str, np.ndarray]:
+    """What the seal does to shaft and housing: force (N) along z and moments (N m) about x and y, each (m,), of the
+    ring that each carries, by its springs, dampers and secondary seal, or of the film itself on a ring that is rigid:
+
+        on a carrier of a floating ring   K (z - z_c) + D (z' - z_c') - friction,  and of the tilts the same
+        on a rigid one                    +-(film + contact - closing force),  +-(moments of film and contact)
+
+    **Source** the supports of equations.py, seen from their other end.
+    **Valid** beside the steady thrust of closing force and film, which balance each other at rest; inertia and weight
+    of a rigid ring are the carrier's own."""
+    found = {}
+    for k, carrier in enumerate(CARRIERS):
+        parts = _through_support(at, k) if at.segment.model.unknowns.floats[k] else _of_film(at, k)
+        found |= {f"{carrier}_{name}": part for name, part in zip(REACTION_PARTS, parts, strict=True)}
+    return found
+
+
+def _of_film(at, k):
+    """Force and moments on a ring that is rigid with its carrier."""
+    sign, gap = 1.0 if k == 0 else -1.0, at.gap
+    force = gap[:, FORCE] + gap[:, CONTACT_FORCE] - at.closing_force
+    return sign * force, sign * (gap[:, MOMENT_X] + gap[:, CONTACT_X]), sign * (gap[:, MOMENT_Y] + gap[:, CONTACT_Y])
+
+
+def _through_support(at, k):
+    """Force and moments through the support and the secondary seal of ring k."""
+    ring = at.segment.p[equations.RING * k : equations.RING * (k + 1)]
+    own, carrier, seal = equations.OWN_STATE + 6 * k, PER_RING * k, equations.SEALS + equations.PER_SEAL * k
+    scene, w = at.segment.model.scene, at.scratch
+    speed, slope = constant_and_slope((scene.stator, scene.shaft)[k].speed, at.segment.interval)
+    spin = speed + slope * at.taus
+
+    def apart(part):
+        return w[:, own + part] - w[:, carrier + part]
+
+    d_x, d_y = apart(TILT_X), apart(TILT_Y)
+    e_x, e_y = d_x - w[:, carrier + OWN_X], d_y - w[:, carrier + OWN_Y]
+    twice = 2.0 * (at.gap[:, STATOR_ANGLE if k == 0 else ROTOR_ANGLE] + ring[equations.AXIS])
+    uneven, cos, sin = ring[equations.UNEVEN_K], np.cos(twice), np.sin(twice)
+    stiffness, damping = ring[equations.TILT_K], ring[equations.TILT_D]
+    force = ring[equations.AXIAL_K] * apart(Z) + ring[equations.AXIAL_D] * apart(Z_RATE)
+    moment_x = stiffness * e_x + uneven * (cos * e_x + sin * e_y) + damping * (apart(TILT_X_RATE) + spin * d_y)
+    moment_y = stiffness * e_y + uneven * (sin * e_x - cos * e_y) + damping * (apart(TILT_Y_RATE) - spin * d_x)
+    if ring[equations.SEAL_LINE] == 0.0:
+        return force, moment_x, moment_y
+    return force - w[:, seal], moment_x - w[:, seal + 1], moment_y - w[:, seal + 2]
 
 
 def _of_ring(ring, parts, first):

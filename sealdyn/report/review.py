@@ -1,11 +1,9 @@
 """One page for a design review: question, scene, sketch, model, accuracy, figures, verdicts, rules, provenance; of any
-number of archives, with nothing loaded from elsewhere."""
+number of archives, with nothing loaded from elsewhere.  Figures are enlarged and read off, tables sorted."""
 
-import base64
 import importlib
 import os
 import re
-import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -13,7 +11,7 @@ from ..answers import toml_line
 from ..archive import is_study, read_info, read_study
 from ..quantities import printed, reading_in
 from .summary import is_radial, run_answer
-from .text import line_words, question_of, solvers_words, study_lines, written_units
+from .text import line_words, question_of, solvers_words, table_columns, written_units
 
 TEMPLATE = Path(__file__).with_name("review.html")
 # Figures of a run and what they show.
@@ -24,9 +22,8 @@ FIGURES = {
     "orbit": "Orbits",
 }
 RADIAL_FIGURES = {"overview": "Overview of the run"}
-# Letters of a study's table (px), the width of the page in px at 0.602 of them a letter, and letters of a line beyond
-# which it is wrapped: reasons are long.
-LARGEST, WIDTH, LONGEST = 12.5, 1030.0, 230
+# Rows of a table that the page has: of more, so many evenly spread ones.
+MOST_ROWS = 500
 # Numbers of four digits below ten millions that stand with a power of ten.
 POWER = re.compile(r"\b\d(?:\.\d+)?e\+0[1-6]\b")
 
@@ -132,8 +129,7 @@ def _run(path: Path, rules, validation) -> dict:
         "film": (film := (summary.get("model") or {}).get("film", "") if summary else ""),
         "validation": validation(film) if validation and film else [],
         "verdict": [],
-        "table": "",
-        "letters": LARGEST,
+        "tables": [],
         "scene": list(_scene(info["resolved"])),
         "scenario": info["scenario"],
         "made": _made(path, info),
@@ -143,7 +139,8 @@ def _run(path: Path, rules, validation) -> dict:
 def _study(path: Path) -> dict:
     study = read_study(path)
     answer = study["answer"]
-    lines = study_lines({**answer, "notes": []})[1:]
+    with reading_in(answer["written"]):
+        tables = [[*zip(*table_columns(table, MOST_ROWS), strict=True)] for table in answer["tables"]]
     return {
         "kind": f"study {study['study']}",
         "name": study["name"],
@@ -158,18 +155,11 @@ def _study(path: Path) -> dict:
         "film": "",
         "validation": [],
         "verdict": [told(words) for words in answer["verdict"]],
-        "table": "\n".join(lines),
-        "letters": letters(lines),
+        "tables": [rows for rows in tables if rows],
         "scene": list(_scene(study["resolved"])),
         "scenario": study["scenario"],
         "made": _made(path, study),
     }
-
-
-def letters(lines) -> float:
-    """How large (px) the letters of a table are, so that its rows fit the page."""
-    longest = min(max(map(len, lines), default=1), LONGEST)
-    return min(LARGEST, int(10 * WIDTH / (0.602 * longest)) / 10)
 
 
 def told(words: str) -> str:
@@ -185,12 +175,12 @@ def _asked(info: dict) -> dict:
     return {"question": question or info["name"], "more": words[len(question) :].strip(". ")}
 
 
-def _drawn(path: Path, chart: str) -> str:
-    """A chart as the address of an image that stands in the page."""
-    with tempfile.TemporaryDirectory() as folder:
-        figure = Path(folder) / "figure.png"
-        importlib.import_module(f"{__package__}.{chart}").draw(path, figure)
-        return f"data:image/png;base64,{base64.b64encode(figure.read_bytes()).decode()}"
+def _drawn(path: Path, chart: str) -> tuple[str, str]:
+    """A chart as it stands in the page, and its axes."""
+    # With matplotlib, only where something is drawn.
+    from .charts.live_figure import svg_of
+
+    return svg_of(importlib.import_module(f"{__package__}.{chart}").draw(path, None))
 
 
 def _scene(table: dict, name: str = "") -> Iterator[tuple[str, str]]:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from ..answers import toml_line
 from ..kernel_cache import solvers_digest
-from ..quantities import in_words, number, reading_in, shown_in
+from ..quantities import everyday, in_words, number, reading_in, shown_in, written_alone
 from ..status import Status
 
 
@@ -52,15 +52,34 @@ def question_of(comment: str) -> str:
     return comment.split(". ")[0]
 
 
-# A key of a speed, and rpm in its value or its table of times and values.
-RPM = re.compile(r"^[^#\n]*speed\s*=[^#\n]*\brpm\b", re.MULTILINE)
+# A key whose unit a reader wants to see again: SI unit, and the quantities that are read in it.
+READ_LIKE = {
+    "clearance": ("m", ("clearance", "h_min", "film_thickness", "largest_gap")),
+    "radius": ("m", ("radius",)),
+    "diameter": ("m", ("radius",)),
+    "pressure": ("Pa", ("pressure", "Pa")),
+    "runout": ("rad", ("tilt", "misalignment")),
+    "misalignment": ("rad", ("tilt", "misalignment")),
+    "speed": ("rad/s", ("rad/s",)),
+}
+# The last word of such a key, and the unit of its value, or of the values in its table over time.
+WRITTEN = re.compile(
+    rf"""^[^#\n]*?({"|".join(READ_LIKE)})["']?\s*=[^#\n"']*["'][^"'\n]*?\d\s*([A-Za-z][\w/]*)""", re.MULTILINE
+)
 
 
 def written_units(info: dict) -> dict[str, str]:
-    """{SI unit: unit} in which a run or study has what may be read in several: its speeds in "rpm" where its scenario
-    or command line has them so, else in "rad/s"."""
-    written = [info.get("scenario") or "", *map(str, info.get("overrides") or [])]
-    return {"rad/s": "rpm" if any(map(RPM.search, written)) else "rad/s"}
+    """{quantity or SI unit: unit} in which a run or study has what may be read in several: speeds in "rpm" where its
+    scenario or command line has them so, else in "rad/s"; pressures, clearances, radii and tilts as they are written,
+    where that is no unit of those by size."""
+    words = "\n".join([info.get("scenario") or "", *map(str, info.get("overrides") or [])])
+    rpm, found = False, dict[str, str]()
+    for key, unit in WRITTEN.findall(words):
+        si, names = READ_LIKE[key]
+        rpm = rpm or unit == "rpm"
+        if written_alone(si, unit := unit.removesuffix("g") if si == "Pa" else unit):
+            found |= dict.fromkeys(names, unit)
+    return found | {"rad/s": "rpm" if rpm else "rad/s"}
 
 
 def speed_unit(info: dict) -> tuple[str, float]:
@@ -210,14 +229,32 @@ def _event(event) -> str:
 COMPUTED = ("=", "+", "-", "@", "\t", "\r")
 
 
-def csv_rows(info: dict, column, block: int = 4096):
-    """Header and rows of all series, read block by block."""
+def plain_letters(unit: str) -> str:
+    """A unit as a scenario may have it."""
+    return unit.replace("µ", "u").replace("²", "^2").replace("³", "^3").replace("°", "deg")
+
+
+def csv_rows(info: dict, column, read: bool = False, block: int = 4096):
+    """Header and rows of all series, read block by block, in SI or in the units that people `read` them in."""
     names = ["time", *[n for n in info["series"] if n != "time"]]
-    yield ",".join(_quoted(f"{n} [{info['series'][n].units}]") for n in names)
+    series = [info["series"][name] for name in names]
+    shown = [(one.display_unit or one.units, one.display_factor) if read else (one.units, 1.0) for one in series]
+    yield ",".join(_quoted(f"{name} [{plain_letters(unit)}]") for name, (unit, _) in zip(names, shown, strict=True))
     for start in range(0, info["rows"], block):
-        part = [column(name, slice(start, min(start + block, info["rows"]))) for name in names]
+        rows = slice(start, min(start + block, info["rows"]))
+        part = [column(name, rows) * factor for name, (_, factor) in zip(names, shown, strict=True)]
         for row in zip(*part, strict=True):
             yield ",".join(repr(float(x)) for x in row)
+
+
+def as_read(columns: dict) -> dict:
+    """Columns of a table, {"h_min [m]": values}, in the units that people read them in."""
+    found = {}
+    for heading, values in columns.items():
+        name, bracket, unit = heading.removesuffix("]").partition(" [")
+        shown, factor = everyday(unit) if bracket else ("", 1.0)
+        found[f"{name} [{plain_letters(shown)}]" if bracket else heading] = values * factor if factor != 1.0 else values
+    return found
 
 
 def csv_lines(columns: dict):
@@ -267,20 +304,16 @@ def table_lines(table: Mapping) -> list[str]:
     if not columns:
         return []
     lines = ["  ".join(cells).rstrip() for cells in zip(*columns, strict=True)]
-    return lines + ([f"({len(rows)} rows in the archive)"] if _step(rows) > 1 else [])
+    return lines + ([f"({len(rows)} rows in the archive)"] if len(rows) > MOST_ROWS else [])
 
 
-def _step(rows) -> int:
-    """Of how many rows one is printed."""
-    return -(-len(rows) // MOST_ROWS)
-
-
-def table_columns(table: Mapping) -> list[list[str]]:
-    """The columns of such a table that are printed, each a heading and cells of equal width."""
+def table_columns(table: Mapping, most: int = MOST_ROWS) -> list[list[str]]:
+    """The columns of such a table that are printed, each a heading and cells of equal width; of more than `most` rows
+    every second, third ..."""
     rows = table["rows"]
     if not rows:
         return []
-    step = _step(rows)
+    step = -(-len(rows) // most)
     printed = [*rows[:-1:step], rows[-1]]
     held = [one["quantity"] for one in table.get("of_rows", ())]
     held = [*held[:-1:step], *held[-1:]]

@@ -19,6 +19,7 @@ from typing import Any
 
 import numpy as np
 
+from ..extensions import OUTSIDE
 from ..scene.scene import SceneError
 from ..unit_names import spelled_like
 from ..units import (
@@ -53,8 +54,6 @@ PERCENT = re.compile(r"\s*([+-]?\d+(?:\.\d*)?)\s*(?:%|percent|per cent)\s*")
 NEAR = re.compile(r"nearest '(\w+)'(?:, by its keys)?$")
 # Keys that stand in no table.
 ABOVE_TABLES = ("schema",)
-# Tables that have tables of what comes from outside.
-OPEN = {"film": "a film", "stator.load": "a load", "rotor.load": "a load"}
 # Characters of what was expected: it may list names.
 LONGEST = 600
 # Of the keys that there are.
@@ -238,7 +237,7 @@ def _explained(name: str, kind: type, raw: dict, error: dict) -> ScenarioError:
     path, holds, value = _follow(kind, raw, error["loc"], keep_last=unknown)
     key = ".".join(path)
     if unknown:
-        return _unknown(name, kind, path, raw)
+        return _unknown(name, kind, path, raw, isinstance(error["input"], dict))
     if error["type"] == "missing" or value is NOTHING:
         found = MISSING[bool(table_in(holds))]
         return ScenarioError(name, key, found, expected_of(key, holds))
@@ -300,23 +299,16 @@ def _expected_here(path: list[str], holds: Any, error: dict) -> str:
     return expected_of(key, holds) + limit
 
 
-def _unknown(name: str, kind: type, path: list[str], raw: dict) -> ScenarioError:
+def _unknown(name: str, kind: type, path: list[str], raw: dict, is_table: bool) -> ScenarioError:
     table, key = ".".join(path[:-1]), path[-1]
     what, valid = ("an unknown key", f"a key of [{table}]") if table else ("an unknown table", "a known table")
-    if isinstance(raw_at(raw, path), dict) and table in OPEN:
-        valid += f", or the name of {OPEN[table]} on SEALDYN_PATH, which this is not"
+    if is_table and table in OUTSIDE:
+        valid += f", or the name of one of the {OUTSIDE[table]} on SEALDYN_PATH, which this is not"
     printable = ".".join([*path[:-1], quoted(key).strip('"')])
     near = nearest(kind, table, key)
     if not table and not near.startswith("nearest") and (like := _table_like(kind, raw.get(key))):
         near = f"nearest '{like}', by its keys"
     return ScenarioError(name, printable, what, f"{valid}; {near}")
-
-
-def raw_at(raw: Any, path: Iterable[str]) -> Any:
-    """What tables of whatever shape have at a path; None of nothing."""
-    for step in path:
-        raw = raw.get(step) if isinstance(raw, dict) else None
-    return raw
 
 
 def _table_like(kind: type, raw: Any) -> str:

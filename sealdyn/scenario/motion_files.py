@@ -1,5 +1,5 @@
-"""Files of samples, of the motion of a carrier or of the force on a ring: their columns take their place in a
-scenario's tables."""
+"""Files of samples, of the motion of a carrier, the force on a ring, or any quantity over time: their columns take
+their place in a scenario's tables."""
 
 import csv
 import io
@@ -7,8 +7,9 @@ import math
 import os
 import re
 import stat
+from bisect import bisect_left, bisect_right
 from pathlib import Path
-from typing import get_type_hints
+from typing import Any, get_args, get_type_hints
 
 from ..scene.excitation import ACCELERATIONS, MOTION_COLUMNS
 from ..scene.loads import LOAD_COLUMNS
@@ -23,11 +24,15 @@ from ..units import (
     Length,
     Moment,
     QuantityError,
+    Speed,
+    VaryingQuantity,
     quantity_of,
     quoted,
 )
-from .errors import ScenarioError, raw_at
+from .errors import ScenarioError, tables, without_indices
 
+# Of a file; what is more than MOST_LISTED is cut to the run.
+MOST_ROWS = 5_000_000
 # What each column may be.
 KINDS = {
     "time": (SECONDS,), "axial": Length.__metadata__, "tilt_x": Angle.__metadata__, "tilt_y": Angle.__metadata__,
@@ -58,20 +63,28 @@ NOTHING = 1e-25
 
 
 def with_columns(
-    raw: dict, name: str, folder: Path | None, held: dict, wrong: list[ScenarioError], bare: list[str]
+    raw: dict, kind: type, name: str, folder: Path | None, held: dict, wrong: list[ScenarioError], bare: list[str]
 ) -> dict:
-    """The tables `raw` of the scenario `name` with the columns of the files that their motions name, beside the files'
-    names.  Files are looked for from `folder`; `held`: an archive's resolved tables, whose columns stand for the file
-    of that name.  What is wrong with a file goes to `wrong`, keys of columns without a unit to `bare`."""
-    for table, known in PLACES.items():
+    """The tables `raw` of the scenario `name`, of a `kind` of file, with the columns of the files that they name.  A
+    table of samples keeps the file's name beside them, a quantity over time does not.  Files are looked for from
+    `folder`; `held`: an archive's resolved tables, whose columns stand for the file of that name.  What is wrong with
+    a file goes to `wrong`, keys of columns without a unit to `bare`."""
+    over_time = quantities_of_files(raw, kind)
+    for table, known in (PLACES | over_time).items():
         motion, kept = samples_at(raw, table), samples_at(held, table)
         if not isinstance(motion.get("file"), str) or next(iter(known)) in motion:
             continue
         file, key = motion["file"], f"{table}.file"
+        if table in over_time:
+            kept = {"file": file, **kept} if "value" in kept else {}
         try:
-            columns = (
-                {} if kept.get("file") == file else _columns((folder or Path()) / file, known, motion.get("titles"))
-            )
+            columns = {}
+            if kept.get("file") != file:
+                columns = _columns((folder or Path()) / file, known, motion.get("titles"), _end(raw))
+                if table in over_time:
+                    columns = {column if column == "time" else "value": read for column, read in columns.items()}
+                elif "time" in known:
+                    columns = _once(file, columns)
             given = {column: values for column, (values, _) in columns.items()} or kept
             bare += [f"{table}.{column}" for column, (_, unit) in columns.items() if not unit]
         except QuantityError as error:
@@ -79,38 +92,123 @@ def with_columns(
             # Another thing that is wrong is not this one's fault.
             first, second, *_ = known
             given = {first: [float(n) for n in range(1, 7)], second: [0.0] * 5 + [1e-9]}
-            given |= {"time": [float(n) for n in range(6)]} if first == "time" else {}
-        columns = {column: given[column] for column in known if given.get(column) is not None}
-        raw = _replaced(raw, table.split("."), {**columns, **motion})
+            given |= {"time": [float(n) for n in range(6)], "value": [1.0] * 6} if first == "time" else {}
+        if table in over_time:
+            columns = {column: given[column] for column in ("time", "value") if column in given}
+            columns |= {step: held for step, held in motion.items() if step not in ("file", "titles")}
+        else:
+            columns = {column: given[column] for column in known if given.get(column) is not None} | motion
+        raw = _replaced(raw, table.split("."), columns)
     return raw
 
 
-def _replaced(tables: dict, path: list[str], value: dict) -> dict:
+def quantities_of_files(raw: dict, kind: type) -> dict[str, dict]:
+    """What is given over time by a file, { file = "speed.csv" }, in the tables `raw` of a `kind` of file: dotted key ->
+    {column: quantity}, time and the key's own name or "value"."""
+    found: dict[str, dict] = {}
+    every = tables(kind)
+
+    def look(tree, path: tuple[str, ...]) -> None:
+        for step, value in tree.items() if isinstance(tree, dict) else enumerate(tree):
+            key = ".".join((*path, str(step)))
+            table, _, last = without_indices(key).rpartition(".")
+            holds = every.get(table, {}).get(last)
+            if isinstance(value, dict) and "file" in value and _varies(holds):
+                quantity = quantity_of(holds)
+                found[key] = {"time": SECONDS, last: quantity, "value": quantity}
+            elif isinstance(value, dict | list) and without_indices(key) in every:
+                look(value, (*path, str(step)))
+
+    look(raw, ())
+    return found
+
+
+def _varies(holds: Any) -> bool:
+    """Whether a field of type `holds` may be a function of time."""
+    kinds = (holds, *get_args(holds))
+    return any(isinstance(part, VaryingQuantity) for kind in kinds for part in getattr(kind, "__metadata__", ()))
+
+
+def _end(raw: dict) -> float | None:
+    """End (s) of the run that the tables ask for, where it can be read from them."""
+    run, shaft = samples_at(raw, "run"), samples_at(raw, "shaft")
+    try:
+        if "duration" in run:
+            return SECONDS.read(run["duration"])
+        speed = abs(Speed.__metadata__[0].read(shaft.get("speed")))
+        return 2 * math.pi * float(run.get("turns", 60)) / speed if speed else None
+    except (QuantityError, TypeError, ValueError):
+        # What is wrong is told where the keys are read.
+        return None
+
+
+def _once(file: str, columns: dict) -> dict:
+    """The columns without what stands there twice: programs write a moment once before and once after an event.
+    Raises QuantityError for a jump."""
+    times = columns["time"][0]
+    twice = {n for n in range(1, len(times)) if times[n] == times[n - 1]}
+    for name, (values, _) in columns.items():
+        for n in sorted(twice):
+            if not math.isclose(values[n], values[n - 1], rel_tol=1e-9):
+                found = f"{quoted(file)}, column {name}: {values[n - 1]:g} and {values[n]:g} at {times[n]:g} s"
+                raise QuantityError(found, "one value at a time: samples are joined by a smooth curve")
+    return {
+        name: ([v for n, v in enumerate(values) if n not in twice], unit) for name, (values, unit) in columns.items()
+    }
+
+
+def _cut(file: str, columns: dict, end: float | None) -> dict:
+    """The columns from before the start of a run to beyond its `end`, MOST_LISTED samples: where a smooth curve is cut
+    off is nothing to see fifty samples away.  Raises QuantityError."""
+    times = columns["time"][0]
+    expected = f"at most {MOST_LISTED}"
+    if end is None:
+        raise QuantityError(f"{quoted(file)}, {len(times)} samples", f"{expected}, or a [run] duration to be cut to")
+    for n in range(1, len(times)):
+        if not times[n] >= times[n - 1]:
+            raise QuantityError(f"{quoted(file)}, time {times[n]:g} after {times[n - 1]:g} s", "times that increase")
+    first, last = max(bisect_right(times, 0.0) - 1, 0), min(bisect_left(times, end) + 1, len(times))
+    if last - first > MOST_LISTED - 100:
+        raise QuantityError(f"{quoted(file)}, {last - first} samples in {end:g} s", f"{expected}, or a shorter run")
+    first = max(first - (MOST_LISTED - last + first) // 2, 0)
+    return {name: (values[first : first + MOST_LISTED], unit) for name, (values, unit) in columns.items()}
+
+
+def _replaced(tables: Any, path: list[str], value: dict) -> Any:
     """The tables with another value at a path."""
     step, *rest = path
+    if isinstance(tables, list):
+        return [_replaced(entry, rest, value) if n == int(step) else entry for n, entry in enumerate(tables)]
     return {**tables, step: _replaced(tables[step], rest, value) if rest else value}
 
 
-def samples_at(tables, table: str) -> dict:
+def samples_at(tables: Any, table: str) -> dict:
     """The samples at a dotted place of tables of whatever shape; empty without any."""
-    tables = raw_at(tables, table.split("."))
+    for step in table.split("."):
+        if isinstance(tables, list):
+            tables = tables[int(step)] if step.isdigit() and int(step) < len(tables) else None
+        else:
+            tables = tables.get(step) if isinstance(tables, dict) else None
     return tables if isinstance(tables, dict) else {}
 
 
-def refuse_files_elsewhere(raw: dict, name: str, held: dict, asked) -> None:
-    """Raises ScenarioError where an archive's scenario, its tables `raw`, names a file that the archive does not hold
-    (`held`: its resolved tables): a stranger's words open none.  Keys that the user has `asked` for are his own."""
-    for table, known in PLACES.items():
+def held_columns(raw: dict, kind: type, name: str, held: dict, asked) -> dict:
+    """An archive's resolved tables `held` without what the user has `asked` for anew.  Raises ScenarioError where its
+    scenario, the tables `raw`, names a file that the archive does not hold: a stranger's words open none."""
+    over_time = quantities_of_files(raw, kind)
+    for table, known in (PLACES | over_time).items():
         motion, kept = samples_at(raw, table), samples_at(held, table)
         steps = f"{table}.file".split(".")
-        own = asked & {".".join(steps[:n]) for n in range(1, len(steps) + 1)}
         first = next(iter(known))
-        if own or first in motion or "file" not in motion:
+        if asked & {".".join(steps[:n]) for n in range(1, len(steps) + 1)}:
+            held = _replaced(held, table.split("."), {}) if table in over_time and kept else held
             continue
-        if kept.get("file") != motion["file"] or first not in kept:
+        lacks = first not in kept or (table not in over_time and kept.get("file") != motion["file"])
+        if "file" in motion and first not in motion and lacks:
             key = f"{table}.file"
             found = f"{quoted(motion['file'])}, which the archive does not hold"
             raise ScenarioError(name, key, found, f"--set {key}=FILE, where it is meant")
+    return held
 
 
 def read_motion(path: Path, known=MOTION) -> dict[str, list[float]]:
@@ -122,14 +220,17 @@ def read_motion(path: Path, known=MOTION) -> dict[str, list[float]]:
 def _a_file(known) -> str:
     first, *others = known
     names = f"{first} and its like"
-    if first == "time":
+    if others[-1] == "value":
+        names = f"time and {others[0]}"
+    elif first == "time":
         names = f"time and {', '.join(others[:2])} or {others[2]}"
         names += "" if len(others) == 3 else " (or their ..._acceleration)"
     return f"a CSV file with a line of names (or titles for it), {names} with units in brackets, or HDF5 (.h5)"
 
 
-def _columns(path: Path, known, titles=None) -> dict[str, tuple[list[float], str]]:
-    """Columns of a file, SI, and the unit in which it has them; `titles` of a CSV file without a line of names."""
+def _columns(path: Path, known, titles=None, end: float | None = None) -> dict[str, tuple[list[float], str]]:
+    """Columns of a file, SI, and the unit in which it has them; `titles` of a CSV file without a line of names, `end`
+    (s) of the run to which a long record is cut."""
     a_file = _a_file(known)
     try:
         size = path.stat().st_size if path.is_file() else None
@@ -143,7 +244,8 @@ def _columns(path: Path, known, titles=None) -> dict[str, tuple[list[float], str
     if next(iter(known)) not in columns or len(columns) < 2:
         there = ", ".join(columns) or "none of them"
         raise QuantityError(f"{quoted(path.name)} with the columns {there}", a_file)
-    return {name: (_in_si(path.name, name, known[name], *columns[name]), columns[name][1]) for name in columns}
+    columns = {name: (_in_si(path.name, name, known[name], *columns[name]), columns[name][1]) for name in columns}
+    return _cut(path.name, columns, end) if len(columns[next(iter(known))][0]) > MOST_LISTED else columns
 
 
 def _in_si(file: str, name: str, quantity, values: list[float], unit: str) -> list[float]:
@@ -157,13 +259,18 @@ def _in_si(file: str, name: str, quantity, values: list[float], unit: str) -> li
     return [factor * value if abs(factor * value) >= NOTHING else 0.0 for value in values]
 
 
+def _most(known) -> int:
+    """Samples that a file may have."""
+    return MOST_ROWS if "time" in known else MOST_LISTED
+
+
 def _hdf5(path: Path, known) -> dict[str, tuple[list[float], str]]:
     # Loaded only where such a file is read.
     from ..archive import ArchiveError
     from ..archive.columns import read_columns
 
     try:
-        found = read_columns(path, (*known, *(TABLE + name for name in known)), MOST_LISTED)
+        found = read_columns(path, (*known, *(TABLE + name for name in known)), _most(known))
     except ArchiveError as error:
         raise QuantityError(str(error), _a_file(known)) from None
     # As they stand in the archive of a study.
@@ -181,8 +288,8 @@ def _csv(path: Path, known, titles) -> dict[str, tuple[list[float], str]]:
         rows = [(0, [str(title) for title in titles]), *rows]
     if not rows:
         raise QuantityError(f"{quoted(path.name)}, an empty file", _a_file(known))
-    if len(rows) - 1 > MOST_LISTED:
-        raise QuantityError(f"{quoted(path.name)}, {len(rows) - 1} samples", f"at most {MOST_LISTED}")
+    if len(rows) - 1 > _most(known):
+        raise QuantityError(f"{quoted(path.name)}, {len(rows) - 1} samples", f"at most {_most(known)}")
     (_, names), *rows = rows
     for line, row in rows:
         # What a decimal comma makes of a number, where commas separate.

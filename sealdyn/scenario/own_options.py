@@ -15,15 +15,13 @@ from functools import cache
 from pydantic import TypeAdapter
 from pydantic.errors import PydanticUserError
 
-from ..extensions import OutsideError, digest, in_folders, installed, outside_module
+from ..extensions import OUTSIDE, OutsideError, digest, in_folders, installed, outside_module
 from ..films import own_film_names
 from ..scene.film import Film
 from ..scene.loads import Load
-from ..scene.rings import RING_NAMES, Rotor, Stator
-from .errors import ScenarioError, expected_of, nearest_of, raw_at, table_in
+from ..scene.rings import Rotor, Stator
+from .errors import ScenarioError, expected_of, table_in
 
-# Tables that may name something from outside, and its room.
-PLACES = {"film": "films", "stator.load": "loads", "rotor.load": "loads"}
 ROOMS = {Film: "films", Load: "loads"}
 # Keys of their tables; what a file of each room has.
 KEYS = {room: {f.name for f in dataclasses.fields(kind)} for kind, room in ROOMS.items()}
@@ -32,36 +30,8 @@ HAS = {"films": ("FILM", "OFFER"), "loads": ("load",)}
 KINDS = {kind.__name__: kind for kind in (Film, Load, Rotor, Stator)}
 
 
-def named_outside(raw: dict, name: str) -> tuple[tuple[str, str], ...]:
-    """What the tables `raw` of the scenario `name` take from outside: ("films/NAME", digest of its source), sorted.
-    Raises ScenarioError for what cannot be read, for a load that is not there, and for a film that is not but has
-    options."""
-    found = set()
-    for place, room in PLACES.items():
-        table = raw_at(raw, place.split("."))
-        if not isinstance(table, dict):
-            continue
-        model = table.get("model")
-        for word in dict.fromkeys([model, *(key for key in table if key not in KEYS[room])]):
-            if not isinstance(word, str) or (room == "films" and word in (*own_film_names(), "auto")):
-                continue
-            made = digest(room, word)
-            if made is None and (word != model or (room == "films" and word not in table)):
-                # The reader of the tables says what is wrong with it.
-                continue
-            try:
-                if options_of(room, word) and word in KEYS[room]:
-                    raise OutsideError(f'"{word}", with Options beside a key of that name', "a file of another name")
-            except OutsideError as error:
-                hint = "" if made else nearest_of(word, {*in_folders(room), *installed(room)})
-                key = f"{place}.{'model' if word == model else word}"
-                raise ScenarioError(name, key, error.found, error.expected + hint) from None
-            found.add((f"{room}/{word}", made))
-    return tuple(sorted(found))
-
-
 def all_outside() -> tuple[tuple[str, str], ...]:
-    """The same of all films and loads there are outside that can be read."""
+    """All films and loads that there are outside and can be read: ("films/NAME", digest of its source)."""
     found = []
     for room in HAS:
         for word in sorted({*in_folders(room), *installed(room)} - {*own_film_names(), *KEYS[room]}):
@@ -69,18 +39,6 @@ def all_outside() -> tuple[tuple[str, str], ...]:
                 options_of(room, word)
                 found.append((f"{room}/{word}", digest(room, word)))
     return tuple(found)
-
-
-def outside_of(scene) -> tuple[tuple[str, str], ...]:
-    """The same of a scene."""
-    rings = (getattr(scene, name, None) for name in RING_NAMES)
-    tables = getattr(scene, "film", None), *(getattr(ring, "load", None) for ring in rings)
-    return tuple(sorted({pair for table in tables for pair in getattr(table, "found", ())}))
-
-
-def digests_of(scene) -> dict[str, str | None]:
-    """Today's digests of the sources of what a scene has from outside, by "films/NAME"."""
-    return {place: digest(*place.split("/")) for place, _ in outside_of(scene)}
 
 
 def with_options(kind: type, found: tuple[tuple[str, str], ...]) -> type:
@@ -150,6 +108,8 @@ def options_of(room: str, name: str) -> type | None:
     kind = getattr(outside_module(room, name, *HAS[room]), "Options", None)
     if kind is None:
         return None
+    if name in KEYS[room]:
+        raise OutsideError(f'"{name}", with Options beside a key of that name', "a file of another name")
     if not dataclasses.is_dataclass(kind) or not kind.__dataclass_params__.frozen:
         raise OutsideError(f'"{name}", whose Options are no frozen dataclass', "@dataclass(frozen=True)")
     try:
@@ -169,7 +129,7 @@ def options_of(room: str, name: str) -> type | None:
 def with_default_options(file, name: str, wrong: list[ScenarioError]):
     """The tables of a file with the default options of the models from outside that it names; to `wrong` go options
     that are needed and not given, and what their `errors()` find."""
-    for place, room in PLACES.items():
+    for place, room in OUTSIDE.items():
         ring, _, load = place.rpartition(".")
         table = getattr(getattr(file, ring), load) if ring else file.film
         if table is None or type(table) in ROOMS or not digest(room, table.model or ""):

@@ -14,7 +14,7 @@ from types import ModuleType
 from typing import Any, Self
 
 from ..answers import toml_text
-from ..extensions import OutsideError, digest, use
+from ..extensions import OUTSIDE, OutsideError, digest, use
 from ..films import own_film_names
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene import variants
@@ -30,8 +30,7 @@ from .errors import (
     refuse_unbounded,
     refuse_unreadable,
 )
-from .motion_files import PLACES as SAMPLES
-from .motion_files import refuse_files_elsewhere, samples_at, whole_file
+from .motion_files import PLACES, held_columns, quantities_of_files, samples_at, whole_file
 from .overrides import (
     as_written,
     key_and_words,
@@ -43,8 +42,7 @@ from .overrides import (
     value_of,
     without_arrays,
 )
-from .own_options import PLACES
-from .tables import Run, given_keys, kind_of, read_tables, table_of
+from .tables import Run, given_keys, kind_of, kind_of_scene, read_tables, table_of
 
 __all__ = [
     "Run",
@@ -134,24 +132,28 @@ class Scenario:
         raw = _toml(self.text, self.name)
         for override in self.overrides:
             override_key(raw, override, self.name)
-        for key, samples in self.motions().items():
+        columns, held = self.motions(), self.resolved()
+        for key in (*columns, *quantities_of_files(raw, kind_of_scene(self.scene))):
             # Whole without the file, which is looked for from somewhere else then.
-            *path, last = key.split(".")
-            functools.reduce(operator.getitem, path, raw)[last] = samples
+            *path, last = (int(step) if step.isdigit() else step for step in key.split("."))
+            of_scene = functools.reduce(operator.getitem, path, held)[last]
+            functools.reduce(operator.getitem, path, raw)[last] = columns.get(key, of_scene)
         return raw
 
     def to_toml(self) -> str:
         """Its text as a file has it; with overrides the tables are written anew, below the head of the file."""
-        anew = self.overrides or any("file" in motion for motion in self.motions().values())
+        raw = _toml(self.text, self.name)
+        files = any("file" in motion for motion in self.motions().values())
+        anew = self.overrides or files or quantities_of_files(raw, kind_of_scene(self.scene))
         return text_of(self.to_dict(), self.name, self.question) if anew else self.text
 
     def motions(self) -> dict[str, dict[str, Any]]:
-        """Motions and loads by samples, of "shaft.motion" and the other SAMPLES: their columns (SI), and the name of
+        """Motions and loads by samples, of "shaft.motion" and the other PLACES: their columns (SI), and the name of
         their file if they came from one."""
         if isinstance(self.scene, RadialScene):
             return {}
         given = {}
-        for key in SAMPLES:
+        for key in PLACES:
             table = self.scene
             for step in key.split("."):
                 # Samples of a load from outside are its own.
@@ -238,7 +240,7 @@ def _same_outside(made_with: Any, held: dict, asked, name: str) -> None:
     are its resolved tables, of keys that the user has `asked` for others are meant."""
     for place, made in made_with.items() if isinstance(made_with, dict) else ():
         room, _, called = str(place).partition("/")
-        for table in (table for table, held_in in PLACES.items() if held_in == room):
+        for table in (table for table, held_in in OUTSIDE.items() if held_in == room):
             steps = table.split(".")
             own = asked & {f"{table}.model", *(".".join(steps[:n]) for n in range(1, len(steps) + 1))}
             if own or samples_at(held, table).get("model") != called or (today := digest(room, called)) == made:
@@ -273,7 +275,7 @@ def parse_scenario(
         override_key(raw, override, name)
     refuse_unbounded(raw, name)
     if held is not None:
-        refuse_files_elsewhere(raw, name, held, asked)
+        held = held_columns(raw, kind_of(raw, name), name, held, asked)
     bare = frozenset(_bare_keys(raw))
     gauge = frozenset(f"film.{key}" for key, value in table_of(raw, "film").items() if is_gauge(value))
     unsaid: list[str] = []

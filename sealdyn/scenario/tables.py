@@ -11,12 +11,15 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, TypeAdapter, ValidationError
 
+from ..extensions import OUTSIDE, OutsideError, digest, in_folders, installed
 from ..films import all_film_names, film_of, own_film_names
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene import Strict
 from ..scene.application import Application, RadialApplication, application_errors
 from ..scene.checks import scene_errors
 from ..scene.excitation import Motion
+from ..scene.film import Film
+from ..scene.loads import Load
 from ..scene.radial import RADIAL, RadialScene, radial_errors
 from ..scene.rings import INERTIAL, RING_NAMES, with_inertia
 from ..scene.scene import Scene, SceneError
@@ -27,15 +30,15 @@ from .errors import (
     LIP_RULES,
     ScenarioError,
     explained,
+    nearest_of,
     scene_errors_of,
     tables,
     together,
     unknown_rules,
     without_indices,
 )
-from .motion_files import with_columns
+from .motion_files import samples_at, with_columns
 from .overrides import SCHEMA, radius_key, refuse_newer, with_radii
-from .own_options import named_outside, with_default_options, with_options
 
 # Numbers in SI units beyond which nothing of this world is.
 SMALLEST, LARGEST = 1e-25, 1e15
@@ -118,7 +121,7 @@ def read_tables(
     raw, halved = with_radii(raw, kind, name, wrong)
     given = given_keys(raw, kind=kind) if given is None else (radius_key(kind, key) for key in given)
     given = frozenset(key for key in given if key.partition(".")[0] not in BESIDE_THE_RUN)
-    raw = with_columns(raw, name, folder, held or {}, wrong, [] if bare is None else bare)
+    raw = with_columns(raw, kind, name, folder, held or {}, wrong, [] if bare is None else bare)
     reading = _total_indicator_reading(raw)
     _tilt_of_tir(raw)
     wrong += [*_run_and_study(raw, name)]
@@ -135,9 +138,12 @@ def read_tables(
     if wrong:
         # What the values are together is asked where each can be.
         raise together(wrong)
-    file = with_default_options(file, name, wrong)
-    if wrong:
-        raise together(wrong)
+    if kind is not ScenarioFile:
+        from .own_options import with_default_options
+
+        file = with_default_options(file, name, wrong)
+        if wrong:
+            raise together(wrong)
     file = dataclasses.replace(file, rotor=with_inertia(file.rotor), stator=with_inertia(file.stator))
     refuse_extremes(file, name)
     if impossible := _impossible(file):
@@ -160,8 +166,61 @@ def read_tables(
 def kind_of(raw: dict, name: str) -> type:
     """The dataclass of the tables `raw` of the scenario `name`, with options of what they take from outside.  Raises
     ScenarioError."""
-    radial = any(table in raw for table in RADIAL)
-    return RadialFile if radial else with_options(ScenarioFile, named_outside(raw, name))
+    if any(table in raw for table in RADIAL):
+        return RadialFile
+    return _with_options(named_outside(raw, name))
+
+
+def _with_options(found: tuple[tuple[str, str], ...]) -> type:
+    if not found:
+        return ScenarioFile
+    from .own_options import with_options
+
+    return with_options(ScenarioFile, found)
+
+
+def named_outside(raw: dict, name: str) -> tuple[tuple[str, str], ...]:
+    """What the tables `raw` of the scenario `name` take from outside: ("films/NAME", digest of its source), sorted.
+    Raises ScenarioError for what cannot be read, for a load that is not there, and for a film that is not but has
+    options."""
+    found = set()
+    for place, room in OUTSIDE.items():
+        table, known = samples_at(raw, place), (Film if room == "films" else Load).__dataclass_fields__
+        model = table.get("model")
+        for word in dict.fromkeys([model, *(key for key in table if key not in known and _is_table(table[key]))]):
+            if not isinstance(word, str) or (room == "films" and word in (*own_film_names(), "auto")):
+                continue
+            made = digest(room, word)
+            if made is None and (word != model or (room == "films" and word not in table)):
+                # The reader of the tables says what is wrong with it.
+                continue
+            try:
+                # Loaded where something comes from outside, as all of own_options.py is.
+                from .own_options import options_of
+
+                options_of(room, word)
+            except OutsideError as error:
+                hint = "" if made else nearest_of(word, {*in_folders(room), *installed(room)})
+                key = f"{place}.{'model' if word == model else word}"
+                raise ScenarioError(name, key, error.found, error.expected + hint) from None
+            found.add((f"{room}/{word}", made))
+    return tuple(sorted(found))
+
+
+def _is_table(value: Any) -> bool:
+    return isinstance(value, dict) or dataclasses.is_dataclass(value)
+
+
+def outside_of(scene: Scene | RadialScene) -> tuple[tuple[str, str], ...]:
+    """The same of a scene."""
+    rings = (getattr(scene, name, None) for name in RING_NAMES)
+    tables = getattr(scene, "film", None), *(getattr(ring, "load", None) for ring in rings)
+    return tuple(sorted({pair for table in tables for pair in getattr(table, "found", ())}))
+
+
+def kind_of_scene(scene: Scene | RadialScene) -> type:
+    """The dataclass of the tables of a scene's file."""
+    return RadialFile if isinstance(scene, RadialScene) else _with_options(outside_of(scene))
 
 
 def _radial(file: RadialFile | None, wrong: list[ScenarioError], name: str) -> dict[str, Any]:

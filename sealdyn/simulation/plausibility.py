@@ -18,9 +18,8 @@ from ..faces.roughness import mean_film_cubed
 from ..numerics.piecewise_linear import initially, points
 from ..scenario.errors import tables, without_indices
 from ..scenario.overrides import radius_key
-from ..scenario.own_options import outside_of, with_options
 from ..scenario.reader import Scenario
-from ..scenario.tables import RadialFile, ScenarioFile
+from ..scenario.tables import kind_of_scene
 from ..scene.contact import HALF_HEIGHT
 from ..scene.film import Coefficients
 from ..scene.gas import GasDam, density_of, gas_of, highest_density, viscosity_of
@@ -301,7 +300,7 @@ def _least_pressure(segment, tau, y) -> float:
 def unit_warnings(scenario: Scenario) -> list[str]:
     """Sentences on the bare numbers of a Scenario that are of another size than seals have, or of which no size tells
     the unit: one rule for every key, by what is `usual` of its quantity."""
-    kind, said = kind_of(scenario), []
+    kind, said = kind_of_scene(scenario.scene), []
     for key in sorted(scenario.bare):
         own = radius_key(kind, key)
         known = declared(kind, own)
@@ -309,12 +308,6 @@ def unit_warnings(scenario: Scenario) -> list[str]:
         values = [(2.0 if own != key else 1.0) * value for value in _values_at(scenario, own, known[0])]
         said += unusual(key, values, known)
     return said
-
-
-def kind_of(scenario: Scenario) -> type:
-    """The dataclass of a scenario's tables."""
-    radial = isinstance(scenario.scene, RadialScene)
-    return RadialFile if radial else with_options(ScenarioFile, outside_of(scenario.scene))
 
 
 def unusual(key: str, values: list[float], known: tuple[Quantity | None, Usual | None]) -> list[str]:

@@ -13,6 +13,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from .. import __version__
+from ..extensions import digest
 from ..kernel_cache import solvers_digest
 
 if TYPE_CHECKING:
@@ -25,7 +26,7 @@ from enum import StrEnum
 import numpy as np
 
 from ..scenario.errors import nearest_of
-from ..scenario.own_options import digests_of
+from ..scenario.tables import outside_of
 from ..scene.radial import RadialScene
 
 
@@ -40,7 +41,12 @@ def provenance(scenario) -> dict[str, Any]:
     """What every archive says of how it was made: versions, and of the scenario name, question and overrides."""
     return {"version": __version__, "solvers": solvers_digest(), "libraries": libraries(), "name": scenario.name,
             "question": scenario.question, "overrides": list(scenario.overrides),
-            **({"outside": outside} if (outside := digests_of(scenario.scene)) else {})}  # fmt: skip
+            **({"outside": outside} if (outside := _outside(scenario.scene)) else {})}  # fmt: skip
+
+
+def _outside(scene) -> dict[str, str | None]:
+    """Today's digests of the sources of what a scene has from outside, by "films/NAME"."""
+    return {place: digest(*place.split("/")) for place, _ in outside_of(scene)}
 
 
 @dataclass(frozen=True, repr=False)

@@ -17,7 +17,6 @@ from typing import Any
 
 import numpy as np
 
-from ..dynamics import reactions
 from ..dynamics.extrema import H, empty_records
 from ..dynamics.from_outside import CARRIERS, KINDS, Held, imposed_on
 from ..dynamics.intervals import LONGEST, Interval, angle_turned
@@ -112,8 +111,7 @@ class Simulation:
     def units(self) -> dict[str, str]:
         """SI units of the state's numbers."""
         found = {"time": "s"} | {signal.name: signal.unit for signal in signal_table(self._run.model)}
-        parts = {f"{c}_{name}": unit for c in reactions.CARRIERS for name, unit in reactions.PARTS.items()}
-        return found | parts | {"least_h_min": "m"}
+        return found | {"least_h_min": "m"}
 
     @property
     def events(self) -> list[dict[str, Any]]:
@@ -297,7 +295,7 @@ class Simulation:
             self._fresh = any(held.moves for held in self._held.values())
         segment, *motion = self._at_end or (self._run.segment(), *self._motion())
         at = samples(segment, np.array([self._tau]), *motion)
-        found = {name: float(values[0]) for name, values in {**series_of(at), **reactions.reactions(at)}.items()}
+        found = {name: float(values[0]) for name, values in series_of(at).items()}
         least = float(self._run.extrema.records[1, H])
         return {**found, "time": self.time, "least_h_min": min(least, found["h_min"])}
 

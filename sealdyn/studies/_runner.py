@@ -27,11 +27,12 @@ from ..scenario.errors import ScenarioError, nearest_of, scene_errors_of
 from ..scenario.overrides import radius_key, without_arrays
 from ..scenario.reader import Scenario, scenario_of
 from ..scenario.settings import bare_settings, study_settings, without, written_settings
+from ..scenario.tables import kind_of_scene
 from ..scene import variants
 from ..scene.patterns import face_orders, faces_tilt, grooves_of, waves_of
 from ..scene.radial import RadialScene
 from ..scene.scene import SceneError
-from ..simulation.plausibility import declared, kind_of, unusual, usual_of
+from ..simulation.plausibility import declared, unusual, usual_of
 from ..simulation.result import at_hand, provenance
 from ..status import Status
 from ..units import printable
@@ -70,7 +71,7 @@ def study_info(name: str) -> Info:
 def setting_warnings(scenario, name: str, flags: dict) -> list[str]:
     """Sentences on the bare numbers that are not usual among the settings of study `name` (underscored), of its `flags`
     and of [study.NAME]: the rule of simulation/plausibility.py."""
-    kind, settings, said = kind_of(scenario), study_module(name).Settings, []
+    kind, settings, said = kind_of_scene(scenario.scene), study_module(name).Settings, []
     for setting, key, holds, values in bare_settings(written_settings(scenario, name, settings, flags), settings):
         where = f"study.{name}.{setting}"
         known = declared(kind, radius_key(kind, key)) if key else usual_of(holds)

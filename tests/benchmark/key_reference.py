@@ -33,11 +33,13 @@ JSON schema (`sealdyn schema`), which editors read too.
   above 1.01325 bar.  Where the air around has another pressure, give absolute ones.
 - Where a table has a radius, its diameter may stand instead (`outer_diameter` for `outer_radius`); never both.
 - A quantity marked ~ may vary with time: `{ time = [...], value = [...] }`, linear between the times, constant before
-  the first and after the last; the same time twice is a step.
+  the first and after the last; the same time twice is a step.  `{ file = "speed.csv" }` reads the columns `time` and
+  `value`, or the key's own name.
 - `[shaft.motion]` and `[housing.motion]` move the carrier of rotor or stator by samples: as lists, or from a `file`
   beside the scenario, CSV with a line of names (`time (ms), axial (um), tilt_x (urad), tilt_y (urad)`, others are not
   read) or HDF5 (datasets with these names, units as attribute `units` or `unit`, packed numbers as the CF conventions
-  have them; missing samples are refused); SI without a unit.  Measured accelerations (`axial_acceleration`) are
+  have them; missing samples are refused); SI without a unit.  A moment that stands there twice counts once; more than
+  200 000 samples are cut to the run.  Measured accelerations (`axial_acceleration`) are
   integrated twice, their drift removed.  `[stator.load.samples]` reads `force`, `moment_x`, `moment_y` likewise,
   `[film.tabulated]` `clearance`, `speed`, `k_axial_axial` and its like, or the archive of `sealdyn study coefficients`.
 - `[film.NAME]` and `[stator.load.NAME]` are the options of a film or a load of one's own ([own](own), and

@@ -69,6 +69,9 @@ def test_show_and_csv(folder):
         name = title.split(" [")[0]
         # Every digit survives the text.
         assert [float(row[place]) for row in table[1:]] == kept[name].tolist()
+    read = list(csv.DictReader(io.StringIO(sealdyn("show", "first.h5", "--csv", "--units", "read", cwd=folder).out)))
+    for title, name, factor in (("h_min [um]", "h_min", 1e6), ("leakage_inner [ml/h]", "leakage_inner", 3.6e9)):
+        assert [float(row[title]) for row in read] == pytest.approx((factor * kept[name]).tolist(), rel=1e-12)
 
 
 @pytest.mark.parametrize("kind", ["overview", "orbit", "film", "spectrum"])

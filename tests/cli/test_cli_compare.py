@@ -82,6 +82,13 @@ def test_coefficients_over_speed_and_frequency(tmp_path):
     rows = list(csv.DictReader(io.StringIO(printed)))
     assert [float(row["k_tilt_x_tilt_y [N*m/rad]"]) for row in rows] == table["k_tilt_x_tilt_y"]
     assert [float(row["frequency [rad/s]"]) for row in rows] == table["frequency"]
+    heads = [
+        sealdyn("show", "c.h5", "--csv", "--table", "against_clearance", "--units", units, cwd=tmp_path).out.split("]")[
+            0
+        ]
+        for units in ("si", "read")
+    ]
+    assert [head.rpartition(" ")[2] for head in heads] == ["[m", "[um"]
     assert sealdyn("show", "c.h5", "--mat", "c.mat", cwd=tmp_path).code == 0
     found = loadmat(tmp_path / "c.mat")
     assert {name: found[name][:, 0].tolist() for name in table} == table

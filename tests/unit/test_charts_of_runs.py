@@ -254,6 +254,21 @@ def test_instants_of_a_shaft_at_rest_are_told_in_milliseconds(tmp_path):
     assert panel(figure, "Film pressure at").get_title("center").endswith(" ms")
 
 
+@pytest.mark.parametrize(
+    "speeds, last, said", [((50.0, 50.0), 1.0, "turns"), ((50.0, 90.0), 1.0, "ms"), ((50.0, 90.0), 3.0, "s")]
+)
+def test_a_run_up_is_drawn_over_time(tmp_path, speeds, last, said):
+    columns = whirling(samples=900)
+    columns["time"] *= last / columns["time"][-1]
+    speed = {"time": [0.0, last], "value": list(speeds)}
+    columns["shaft_speed"] = np.interp(columns["time"], speed["time"], speed["value"])
+    archive = write(tmp_path / "seal.h5", columns, shaft={"speed": speed})
+    figure = drawn(overview, archive, tmp_path / "chart.png", written=False)
+    shown = panel(figure, "Smallest film thickness").lines[0].get_xdata()[-1]
+    assert any(said in ax.get_xlabel().replace("time, ", "") for ax in figure.axes)
+    assert shown == pytest.approx({"turns": shown, "ms": 1e3 * last, "s": last}[said])
+
+
 # --- rings ------------------------------------------------------------------------------------------------
 
 

@@ -10,7 +10,8 @@ from sealdyn import quantities, units
 from sealdyn.answers import Answer, Axis, Level, Panel, Series, Table, as_json, panels_of, plain
 from sealdyn.report import panels
 from sealdyn.report.panels import sheet_of
-from sealdyn.report.text import table_lines
+from sealdyn.report.text import table_lines, written_units
+from sealdyn.units import Angle, Length, Pressure
 
 SPEED, GAP = Axis("speed"), Axis("clearance")
 # A panel of every kind, zeros and gaps among its numbers.
@@ -80,6 +81,33 @@ def test_factors_of_the_table_are_those_of_the_parser():
         own, one = units.dimension_and_factor(unit.replace(" ", "*"))
         assert float(per / one) * factor == pytest.approx(1.0, rel=1e-12), (unit, shown)
         assert dimension == own, (unit, shown)
+
+
+@pytest.mark.parametrize(
+    ("text", "overrides", "units"),
+    [
+        ('outer_pressure = "5 bar"\nclearance = "10 um"\n[shaft]\nspeed = "1000 rad/s"\n', [], {"rad/s": "rad/s"}),
+        ('outer_pressure = "70 psig"\nclearance = "0.4 mil"\n', ['shaft.speed="9000 rpm"'],
+         {"pressure": "psi", "clearance": "mil", "h_min": "mil", "rad/s": "rpm"}),
+        ('speed = { time = [0, 1], value = ["1 rpm", "2 rpm"] }\nrunout = "20 um TIR"\nouter_diameter = "3 in"\n',
+         ['rotor.runout="0.01 deg"'], {"rad/s": "rpm", "tilt": "deg", "radius": "in"}),
+        ('# speed = "100 rpm", clearance = "1 mil"\nclearance = 1e-5\n', [], {"rad/s": "rad/s"}),
+    ],
+)  # fmt: skip
+def test_what_a_scenario_has_in_other_units_is_read_in_them(text, overrides, units):
+    found = written_units({"scenario": text, "overrides": overrides})
+    assert {name: found.get(name) for name in units} == units
+    assert set(found.values()) == set(units.values())
+    for name, unit in units.items():
+        with quantities.reading_in(found):
+            assert quantities.shown_in(name, [1.0])[0] == unit
+
+
+def test_units_that_are_written_are_those_of_the_reader():
+    for unit, others in quantities.WRITTEN.items():
+        quantity = {"m": Length, "rad": Angle, "Pa": Pressure}[unit].__metadata__[0]
+        for name, factor in others.items():
+            assert quantity.read(f"{factor!r} {name}") == pytest.approx(1.0, rel=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -198,8 +198,9 @@ def pressure(ax, run: Run):
 def _over_face(ax, radius, angle, over, colours: str):
     """Values (radii, angles) over the face."""
     image = ax.pcolormesh(
-        angle, MM * radius, over, shading="gouraud", cmap=colormaps[colours].resampled(STEPS), norm=scale(over)
-    )
+        angle, MM * radius, over, shading="gouraud", cmap=colormaps[colours].resampled(STEPS), norm=scale(over),
+        rasterized=True,
+    )  # fmt: skip
     annulus(ax, MM * radius[0], MM * radius[-1])
     return image
 
@@ -209,7 +210,7 @@ def _thinnest_place(ax, angle, radius) -> None:
 
 
 def _when(run: Run, row: int) -> str:
-    return f"turn {run.progress[row]:.4g}" if run.turning else f"{run.progress[row]:.4g} ms"
+    return f"turn {run.progress[row]:.4g}" if run.turning else f"{run.progress[row]:.4g} {run.progress_unit}"
 
 
 def scale(over) -> Normalize:

@@ -65,9 +65,10 @@ def panel(ax, run: Run, tilts=None, title: str = "Orbit of the relative tilt", t
 
 def window(run: Run, first: int) -> str:
     """The drawn stretch in words."""
-    amount = run.progress[-1] - run.progress[first]
+    along, unit = (run.turns, "turns") if run.turned else (run.progress, run.progress_unit)
+    amount = along[-1] - along[first]
     digits = 2 if amount < 10 else 3
-    return f"last {amount:.{digits}g} {'turns' if run.turning else 'ms'}" if first else "whole run"
+    return f"last {amount:.{digits}g} {unit}" if first else "whole run"
 
 
 def hull(run: Run, prefix: str, per: float | None = None) -> np.ndarray:
@@ -88,7 +89,7 @@ def hull(run: Run, prefix: str, per: float | None = None) -> np.ndarray:
 
 def mark_turns(ax, run: Run, first: int, x, y) -> None:
     """A dot wherever the shaft passes its zero angle."""
-    if not run.has("shaft_angle") or not run.turning:
+    if not run.has("shaft_angle") or not run.turned:
         return
     phase = run.turns[first:] + run.values("shaft_angle", 0, 1)[0] / (2 * np.pi)
     whole = np.arange(np.ceil(phase[0]), np.floor(phase[-1]) + 1)[-200:]

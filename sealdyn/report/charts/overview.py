@@ -27,7 +27,7 @@ FAR = 4.0
 BRIEF = 0.1
 # Name of a row, and what stands in it: key of the summary, quantity, digits, words after it.
 NUMBERS = (
-    ("smallest film", ("h_min.value", "m", 4, ""), ("h_min.of_clearance", "share", 3, " of clearance")),
+    ("smallest film", ("h_min.value", "h_min", 4, ""), ("h_min.of_clearance", "share", 3, " of clearance")),
     ("tilt max / min / mean", *((f"relative_misalignment.{k}", "misalignment", 3, "") for k in ("max", "min", "mean"))),
     ("steady max / min", *((f"relative_misalignment.steady_{k}", "misalignment", 4, "") for k in ("max", "min"))),
     ("closed form max / min", *((f"closed_form.relative_{k}", "misalignment", 4, "") for k in ("max", "min"))),
@@ -51,7 +51,7 @@ NORMAL = " (0 °C, 1.01325 bar)"
 @look()
 def draw(archive_path, out_path, turns: float = 4.0):
     """Everything on one sheet; the enlarged panels show the last `turns` turns."""
-    run = Run(archive_path)
+    run = Run(archive_path, over_time=True)
     if is_radial(run.info):
         return followers.draw(archive_path, out_path, turns)
     first, tilts, moves = run.last(turns), _tilts(run), spectrum.has_orders(run)
@@ -147,10 +147,10 @@ def film_panel(ax, run: Run, first: int) -> None:
 
 def _speed(run: Run, top: float) -> list[Series]:
     """A shaft speed that varies, from 0 to the `top`: its ends are in its name, an axis has no room here."""
-    x, speed = run.envelope("shaft_speed") if run.has("shaft_speed") else ((), np.zeros(1))
-    low, high = speed.min(), speed.max()
-    if not high - low > 1e-9 * max(high, -low):
+    if not run.varies:
         return []
+    x, speed = run.envelope("shaft_speed")
+    low, high = speed.min(), speed.max()
     with reading_in(written_units(run.info)):
         words = f"shaft speed, {in_words('speed', low)} to {in_words('speed', high)}"
     low, high = min(low, 0.0), max(high, 0.0)

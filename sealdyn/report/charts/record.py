@@ -7,12 +7,14 @@ from itertools import takewhile
 import numpy as np
 
 from ...archive import column, read_info
-from ...quantities import by_size, everyday, factor_of
-from ..text import question_of
+from ...quantities import by_size, everyday, factor_of, printed
+from ..text import question_of, written_units
 
 BLOCK = 1 << 16
 POINTS = 20_000
 MILLISECONDS = factor_of("s", "ms") or 1.0
+# A run (s) that is read in seconds.
+LONG = 2.0
 # How many of the everyday unit of radii, of that of films, and of that of angles make one in SI.
 MM, UM, DEG = (everyday(name)[1] for name in ("radius", "m", "angle"))
 
@@ -26,11 +28,14 @@ class Run:
     """One archive, read when asked, never held whole.  `rows` is fixed when it is opened, so that the
     panels of one figure agree while the run goes on."""
 
-    def __init__(self, path):
+    def __init__(self, path, over_time: bool = False):
         self.path, self.info = path, read_info(path)
         self.rows, self.summary, self.status = self.info["rows"], self.info["summary"], self.info["status"]
         self.message = self.info.get("message", "")
         self.resolved = self.info["resolved"]
+        # Of a run-up more is read over time than over turns.
+        self.over_time = over_time and self.varies
+        self.written = written_units(self.info)
         self._sizes: dict[tuple[str, int], float] = {}
 
     def has(self, *names: str) -> bool:
@@ -45,13 +50,23 @@ class Run:
         """The unit that people read a series in from row `first` on, and how many of it make one SI unit: what the
         archive says, the everyday one by size, by default the largest.  Both components of a tilt have one unit."""
         series = self.info["series"][name]
-        shown = series.display_unit or series.units, series.display_factor
-        return by_size(series.units, *shown, self.largest(name, first) if size is None else size)
+        return self._shown(series) or by_size(
+            series.units, series.display_unit or series.units, series.display_factor,
+            self.largest(name, first) if size is None else size,
+        )  # fmt: skip
 
     def field_shown(self, name: str, size: float) -> tuple[str, float]:
         """The same of a field over the face or around the shaft of a `size` (SI)."""
         field = self.info["fields"][name]
-        return by_size(field.units, field.display_unit or field.units, field.display_factor, size)
+        return self._shown(field) or by_size(field.units, field.display_unit or field.units, field.display_factor, size)
+
+    def _shown(self, held) -> tuple[str, float] | None:
+        """The unit that the scenario has for what a series or field is, where its everyday one is not that."""
+        like = {"m": "clearance", "rad": "tilt", "Pa": "pressure"}.get(held.units)
+        unit = self.written.get(like)
+        if unit is None or held.display_unit != everyday(held.units)[0]:
+            return None
+        return printed(unit), factor_of(held.units, unit)
 
     def largest(self, name: str, first: int = 0) -> float:
         """Largest magnitude of a series (SI), or of both components of a tilt."""
@@ -82,18 +97,34 @@ class Run:
             total, carry = (grown[-1] if len(grown) else total), [b[-1] for b in block]
         return turns
 
+    @cached_property
+    def turned(self) -> bool:
+        """Whether the shaft turns at all."""
+        return self.rows > 1 and self.turns[-1] > 0
+
     @property
     def turning(self) -> bool:
-        return self.rows > 1 and self.turns[-1] > 0
+        """Whether the x axes show turns."""
+        return self.turned and not self.over_time
 
     @cached_property
     def progress(self) -> np.ndarray:
-        """What the x axes show: turns, or milliseconds when the shaft stands still."""
-        return self.turns if self.turning else MILLISECONDS * (self.values("time") - self.values("time", 0, 1))
+        """What the x axes show: turns, or time."""
+        if self.turning:
+            return self.turns
+        return (factor_of("s", self.progress_unit) or 1.0) * (self.values("time") - self.values("time", 0, 1))
+
+    @cached_property
+    def progress_unit(self) -> str:
+        if self.turning:
+            return "turns"
+        return "s" if self.rows and self.values("time", self.rows - 1)[0] >= LONG else "ms"
 
     @property
-    def progress_unit(self) -> str:
-        return "turns" if self.turning else "ms"
+    def varies(self) -> bool:
+        """Whether the speed of the shaft does."""
+        speed = self.resolved.get("shaft", {}).get("speed")
+        return isinstance(speed, dict) and self.has("shaft_speed") and len(set(speed["value"])) > 1
 
     @property
     def progress_label(self) -> str:
@@ -102,9 +133,9 @@ class Run:
     def last(self, amount: float, most_rows: int = POINTS) -> int:
         """First row of the last `amount` of turns (of everything, if the shaft stands still), at most
         `most_rows` back."""
-        if not self.turning:
+        if not self.turned:
             return max(self.rows - most_rows, 0)
-        first = int(np.searchsorted(self.progress, self.progress[-1] - amount * (1 + 1e-9)))
+        first = int(np.searchsorted(self.turns, self.turns[-1] - amount * (1 + 1e-9)))
         return max(first, self.rows - most_rows, 0)
 
     def envelope(self, name: str, first: int = 0, points: int = POINTS) -> tuple[np.ndarray, np.ndarray]:

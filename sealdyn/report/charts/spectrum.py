@@ -49,7 +49,7 @@ def has_orders(run: Run) -> bool:
 
 
 def _long_enough(run: Run) -> bool:
-    return run.turning and run.turns[-1] >= LEAST_TURNS * (1 - 1e-9) and run.has("shaft_speed")
+    return run.turned and run.turns[-1] >= LEAST_TURNS * (1 - 1e-9) and run.has("shaft_speed")
 
 
 def _window(run: Run, turns: float | None) -> int:

@@ -21,11 +21,11 @@ from ...scenario.errors import ScenarioError, nearest_of
 from ...scenario.errors import tables as keys_of_tables
 from ...scenario.reader import with_values
 from ...scenario.settings import axis
+from ...scenario.tables import kind_of_scene
 from ...scene.excitation import Housing, Shaft
 from ...scene.patterns import grooves_of
 from ...scene.scene import SceneError
 from ...scene.variants import arrangement, frozen_at_start
-from ...simulation.plausibility import kind_of
 from ...simulation.selection import choose_method
 from ...simulation.stability import critical_speed, speeds_held, whirl_ratio
 from ...units import quantity_of
@@ -117,7 +117,7 @@ def _held_by(scenario, where, key):
     if key == INERTIA_RATIO:
         return float, "1"
     table, _, leaf = key.rpartition(".")
-    tables = keys_of_tables(kind_of(scenario))
+    tables = keys_of_tables(kind_of_scene(scenario.scene))
     holds = tables.get(table, {}).get(leaf)
     if holds is None or table in ("run", "study", ""):
         known = [f"{t}.{k}" for t, keys in tables.items() for k in keys if t not in ("run", "")]

@@ -12,7 +12,8 @@ from scipy.stats import binomtest, norm, qmc, spearmanr, truncnorm, uniform
 from ...quantities import everyday
 from ...scenario.errors import ScenarioError, diameters, nearest, nearest_of, tables, without_indices
 from ...scenario.overrides import radius_key
-from ...scenario.own_options import outside_of, with_options
+from ...scenario.own_options import with_options
+from ...scenario.tables import outside_of
 from ...scene import variants
 from ...scene.scene import Scene
 from ...units import Length, Quantity, QuantityError, quantity_of, quoted
