@@ -171,6 +171,9 @@ def test_a_file_that_has_changed_is_read_again(folder):
         scenario = read_scenario(REFERENCE, ["film.model=fed_film", f"{SUPPLY}=12 bar"])
         seen.append(film_named("fed_film").opening_law(scenario.scene.film)(1e-5, 0.0, 5e5))
     assert seen[1] == pytest.approx(0.5 * seen[0])
+    with pytest.raises(ScenarioError) as refused:
+        read_scenario(REFERENCE, ["film.model=fed_film", "film.fed_film={}"])
+    assert refused.value.key == SUPPLY and "absolute pressure" in refused.value.expected
 
 
 def test_where_a_film_of_ones_own_stands(fed, folder):

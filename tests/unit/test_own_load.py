@@ -72,9 +72,9 @@ def test_a_tone_of_ones_own_is_the_tone_of_the_package(folder):
 
 
 def test_no_tone_is_too_fast_to_be_seen(folder):
-    """One that has whole periods between the first samples, 1024 over the run."""
+    """One that has two whole periods between the first samples, 1024 over the run, and one to their middles."""
     duration = 4 * 2 * np.pi / 1000.0
-    words = ["run.turns=4", "stator.load.model=own_tone", f"stator.load.own_tone.frequency={1024 / duration!r} Hz"]
+    words = ["run.turns=4", "stator.load.model=own_tone", f"stator.load.own_tone.frequency={2048 / duration!r} Hz"]
     samples = read_scenario(REFERENCE, words).scene.stator.load.samples
     assert len(samples.time) > 20 * 1024 and max(samples.force) == pytest.approx(5.0, rel=1e-4)
     assert samples.time[0] <= 0.0 and samples.time[-1] >= duration
@@ -115,6 +115,7 @@ def test_what_is_wrong_with_a_load(pulsed, key, value, found):
 @pytest.mark.core
 def test_a_load_is_kept_and_runs_again(pulsed, tmp_path, monkeypatch):
     assert pickle.loads(pickle.dumps(pulsed)) == pulsed == sealdyn.Scenario.from_dict(pulsed.to_dict())
+    assert pulsed.resolved()["stator"]["load"]["samples"] is None
     changed = pulsed.with_({"stator.load.gear_pulse.narrowness": 0.0})
     assert set(changed.scene.stator.load.samples.force) == {20.0} and len(pulsed.scene.stator.load.samples.time) > 2000
     path = tmp_path / "a.h5"
