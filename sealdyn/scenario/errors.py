@@ -237,7 +237,7 @@ def _explained(name: str, kind: type, raw: dict, error: dict) -> ScenarioError:
     path, holds, value = _follow(kind, raw, error["loc"], keep_last=unknown)
     key = ".".join(path)
     if unknown:
-        return _unknown(name, kind, path, raw, isinstance(error["input"], dict))
+        return _unknown(name, kind, path, error["input"])
     if error["type"] == "missing" or value is NOTHING:
         found = MISSING[bool(table_in(holds))]
         return ScenarioError(name, key, found, expected_of(key, holds))
@@ -299,25 +299,25 @@ def _expected_here(path: list[str], holds: Any, error: dict) -> str:
     return expected_of(key, holds) + limit
 
 
-def _unknown(name: str, kind: type, path: list[str], raw: dict, is_table: bool) -> ScenarioError:
+def _unknown(name: str, kind: type, path: list[str], value: Any) -> ScenarioError:
     table, key = ".".join(path[:-1]), path[-1]
     what, valid = ("an unknown key", f"a key of [{table}]") if table else ("an unknown table", "a known table")
-    if is_table and table in OUTSIDE:
+    if isinstance(value, dict) and table in OUTSIDE:
         valid += f", or the name of one of the {OUTSIDE[table]} on SEALDYN_PATH, which this is not"
-    printable = ".".join([*path[:-1], quoted(key).strip('"')])
-    near = nearest(kind, table, key)
-    if not table and not near.startswith("nearest") and (like := _table_like(kind, raw.get(key))):
-        near = f"nearest '{like}', by its keys"
-    return ScenarioError(name, printable, what, f"{valid}; {near}")
+    near, like = nearest(kind, table, key), _table_like(kind, table, key, value)
+    near = f"nearest {like}" if like and not near.startswith("the table") else near
+    return ScenarioError(name, ".".join([*path[:-1], quoted(key).strip('"')]), what, f"{valid}; {near}")
 
 
-def _table_like(kind: type, raw: Any) -> str:
-    """The table that has most keys of one, more than half of them; "" if none has."""
+def _table_like(kind: type, path: str, key: str, raw: Any) -> str:
+    """The table below a path that is spelled like one, or has most of its keys, more than half of them; "" if none."""
     keys = set(raw) if isinstance(raw, dict) else set()
-    every = {table: known | diameters(known) for table, known in tables(kind).items() if "." not in table}
-    shares = {table: len(keys.intersection(known)) for table, known in every.items() if table}
-    best = max(shares, key=lambda table: shares[table], default="")
-    return best if shares.get(best, 0) > 0.5 * len(keys) else ""
+    below = {table.rpartition("."): known | diameters(known) for table, known in tables(kind).items() if table}
+    every = {last: known for (above, _, last), known in below.items() if above == without_indices(path)}
+    if keys and (close := spelled_like(key, every)):
+        return f"'{close[0]}'"
+    best = max(every, key=lambda table: len(keys.intersection(every[table])), default="")
+    return f"'{best}', by its keys" if best and 2 * len(keys.intersection(every[best])) > len(keys) else ""
 
 
 def _beside_the_point(raw: dict, location: tuple) -> bool:

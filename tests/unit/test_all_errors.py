@@ -54,6 +54,17 @@ def test_a_misspelt_diameter_is_no_missing_radius():
     assert keys(FMR.replace('outer_radius = "40 mm"', 'outer_diametre = "80 mm"')) == ["film.outer_diametre"]
 
 
+@pytest.mark.parametrize(
+    ("written", "meant"),
+    [("face", "film"), ("fluid", "film"), ("flim", "film"), ("rotor.springs", "support"), ("rotor.suport", "support")],
+)
+def test_a_table_of_another_name_is_known_by_its_spelling_or_its_keys(written, meant):
+    """And is one thing wrong: what it was meant for is not missing besides, where it is wrong alone."""
+    place = ".".join([*written.split(".")[:-1], meant])
+    first, *others = errors(FMR.replace(f"[{place}]", f"[{written}]"))
+    assert first.key == written and f"nearest '{meant}'" in first.expected and not others
+
+
 def test_what_no_scene_can_have_together_of_every_part():
     wrong = ["film.cavitation_pressure=1 bar", "closing.balance_ratio=-1", "rotor.polar_inertia=1", "run.duration=-1"]
     expected = ["film.cavitation_pressure", "closing.balance_ratio", "rotor.polar_inertia", "run.duration"]
