@@ -325,6 +325,9 @@ class ErrorScales:
         ends = [end for interval in run.intervals.few for end in self._ends(model, interval)]
         self.force, self.leakage, self.torque = (max(one[k] for one in ends) for k in range(3))
         swept = self._gap_volume(model) * self.rate
+        # Of what a film does not know there is no error.
+        self.unknown = np.flatnonzero(np.isnan([self.leakage, self.torque])) - 2
+        self.leakage, self.torque = np.nan_to_num([self.leakage, self.torque])
         self.leakage = swept if self.leakage < NOTHING * swept else self.leakage
 
     def _ends(self, model, interval):
@@ -359,7 +362,9 @@ class ErrorScales:
         rates over theirs, film force, moments about x and y, leakage, torque."""
         at = samples(segment, taus, q, q_rate, x)
         loads = at.gap[:, [FORCE, MOMENT_X, MOMENT_Y, FLOW_INNER]]
-        return np.column_stack([q / self.lengths, q_rate / (self.lengths * self.rate), loads, at.torque])
+        columns = np.column_stack([q / self.lengths, q_rate / (self.lengths * self.rate), loads, at.torque])
+        columns[:, self.unknown] = 0.0
+        return columns
 
     def errors(self, one: np.ndarray, other: np.ndarray) -> np.ndarray:
         """How far (m, len(QUANTITIES)) the columns of two runs at the same times are apart, over the scales of the

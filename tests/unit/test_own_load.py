@@ -133,6 +133,14 @@ def test_a_load_is_kept_and_runs_again(pulsed, tmp_path, monkeypatch):
     assert refused.value.key == "stator.load.model" and made["loads/gear_pulse"] in refused.value.expected
 
 
+def test_a_film_that_knows_no_leakage_under_a_load_is_certified(pulsed):
+    """By a second run: what the film does not know has no error."""
+    film = pulsed.with_film(OWN / "films" / "fed_film.py", supply_pressure="12 bar")
+    found = sealdyn.simulate(film).summary
+    assert found["status"] == "ok" and 0.0 < found["certificate"]["estimated"] <= 1e-6
+    assert found["leakage"]["mean"] is None and found["friction"]["power"] > 0.0
+
+
 def test_a_study_of_ones_own_keeps_its_points(pulsed, tmp_path):
     flags = {"key": "stator.load.gear_pulse.force", "values": [10.0, 40.0]}
     answers = [
