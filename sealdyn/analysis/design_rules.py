@@ -6,8 +6,6 @@ in gearboxes, good for a first judgement of other seals.  Limits are as printed,
 """
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,9 +16,10 @@ from ..scenario.reader import Scenario
 from ..scene.application import Application
 from ..scene.gas import viscosity_of
 from ..scene.patterns import HIGHEST_ORDER
-from ..simulation.result import plain
+from .gas_rules import OF_GAS
 from .seal_figures import (
     Finding,
+    Rule,
     Seal,
     Verdict,
     followability,
@@ -29,28 +28,15 @@ from .seal_figures import (
     note,
     other_seals,
     resonances,
+    rows,
 )
 from .seal_types import BALANCE, RUNOUT, SPEEDS, TRAVEL, Duty, seal_type_finding
 
-GUIDE = "Hayden & Keller, NASA CR-120997 (1974)"
 CC_PER_H = 1e-6 / 3600
 SPRINGS = {"wave_washer": "a wave washer takes", "coil": "coil springs take", "bellows": "bellows take"}
 # Of the table's face width: how near counts as that width is not the guide's.
 NEAR = 0.1
 ANGLES = np.linspace(0.0, 2 * np.pi, 40 * HIGHEST_ORDER + 1)  # forty to a wave
-
-
-@dataclass(frozen=True)
-class Rule:
-    """A design rule: `judge(seal, limit)` gives its `Finding`, of a figure in `unit` (SI) against the `limit` (SI: one
-    number, least and most, or a table; None: there is none); `source` is what of the guide its numbers are, `command`
-    tests it ("" if nothing does)."""
-
-    judge: Callable
-    limit: object
-    unit: str
-    source: str
-    command: str = ""
 
 
 def findings(scenario: Scenario, model: Model) -> list[dict]:
@@ -60,33 +46,10 @@ def findings(scenario: Scenario, model: Model) -> list[dict]:
     acknowledged (None without), and the rule's own numbers, `needs` among them: keys of which one is missing.
     Raises SceneError where the film has no solution."""
     application = scenario.application or Application()
-    return rows(RULES, Seal(scenario.scene, application, model), application.acknowledge)
-
-
-def rows(rules: dict[str, Rule], seal, acknowledge: dict[str, str]) -> list[dict]:
-    """`findings` by a table of rules, by name, for what they judge; `acknowledge` {rule: reason}."""
-    return [plain(_row(name, rule, rule.judge(seal, rule.limit), acknowledge.get(name)))
-            for name, rule in sorted(rules.items())]  # fmt: skip
-
-
-def _row(name: str, rule: Rule, finding: Finding, reason: str | None) -> dict:
-    if reason is not None and finding.verdict in (Verdict.FAIL, Verdict.NOTE):
-        finding = replace(finding, verdict=Verdict.ACKNOWLEDGED)
-    unit = rule.unit if finding.unit is None else finding.unit
-    return {
-        "rule": name,
-        "verdict": str(finding.verdict),
-        "value": finding.value,
-        "unit": "" if finding.value is None else unit,
-        "least": finding.least,
-        "most": finding.most,
-        "guide": GUIDE,
-        "source": rule.source,
-        "said": finding.sentence,
-        "command": rule.command,
-        "reason": reason,
-        **finding.numbers,
-    }
+    rules = RULES
+    if scenario.scene.film.gas is not None:
+        rules = {name: rule for name, rule in RULES.items() if name not in OF_OIL} | OF_GAS
+    return rows(rules, Seal(scenario.scene, application, model), application.acknowledge)
 
 
 # --- faces and film --------------------------------------------------------------------------------------
@@ -103,8 +66,6 @@ def _sliding_speed(seal: Seal, limit) -> Finding:
 
 def _seal_type(seal: Seal, limit) -> Finding:
     """Pass unless something goes beyond a face seal; which other types would do."""
-    if seal.scene.film.gas is not None:
-        return other_seals("the film is a gas")
     asked, diameter, runout = seal.application, seal.application.shaft_diameter, seal.application.shaft_runout
     offsets = [length for length in (runout and 0.5 * runout, asked.eccentricity) if length is not None]
     total = sum(offsets) if offsets else None
@@ -199,8 +160,6 @@ def _film_thickness(seal: Seal, limit) -> Finding:
 
 def _leakage(seal: Seal, limit) -> Finding:
     """Pass up to the goal, a note up to the limit of the data sheet (5 cc/h without one)."""
-    if seal.scene.film.gas is not None:
-        return other_seals("the film is a gas")
     film, own = seal.scene.film, seal.application.leakage_limit
     if initially(film.outer_pressure) == initially(film.inner_pressure):
         return missing_keys("film.outer_pressure", "film.inner_pressure")
@@ -221,8 +180,6 @@ def _lubricant_side(seal: Seal, limit) -> Finding:
     """Pass at the outer diameter, where it is thrown back into the seal; at the inner one the faces may starve: a
     note."""
     film = seal.scene.film
-    if film.gas is not None:
-        return other_seals("the film is a gas")
     rise = initially(film.outer_pressure) - initially(film.inner_pressure)
     if rise == 0.0:
         return missing_keys("film.outer_pressure", "film.inner_pressure")
@@ -378,8 +335,6 @@ def _seal_temperature(seal: Seal, limit) -> Finding:
 
 def _coking(seal: Seal, limit) -> Finding:
     """Pass up to 505 K."""
-    if seal.scene.film.gas is not None:
-        return other_seals("the film is a gas")
     temperature = seal.face_temperature
     if temperature is None:
         return missing_keys("application.highest_temperature")
@@ -447,3 +402,5 @@ RULES = {
     "shaft_resonance": Rule(_shaft_resonance, None, "Hz", "rotation 3 to 350 Hz", "sealdyn study campbell FILE"),
     "sliding_speed": Rule(_sliding_speed, SPEEDS["face seal"], "m/s", "20 000 ft/min"),
 }  # fmt: skip
+# In a gearbox: what is asked of a gas film in their place stands in gas_rules.py.
+OF_OIL = ("coking", "film_thickness", "leakage", "lubricant_side", "seal_type")

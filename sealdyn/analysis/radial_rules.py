@@ -9,8 +9,7 @@ from ..radial_seals.followers import followers_of
 from ..scenario.reader import Scenario
 from ..scene.application import RadialApplication
 from ..scene.radial import RadialScene
-from .design_rules import Rule, rows
-from .seal_figures import Finding, Verdict, limit_finding, other_seals
+from .seal_figures import Finding, Rule, Verdict, limit_finding, other_seals, rows
 from .seal_types import (
     LIP_ECCENTRICITY,
     LIP_PRESSURE,

@@ -2,7 +2,8 @@
 against what the ring needs to follow the rotor; and what a rule finds."""
 
 import math
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
 import numpy as np
@@ -16,6 +17,7 @@ from ..numerics.piecewise_linear import PiecewiseLinear, initially, points
 from ..scene.application import Application
 from ..scene.rings import RING_NAMES
 from ..scene.scene import Scene
+from ..simulation.result import plain
 
 # A frequency nearer to a natural one than this share of it is at resonance; the guide gives no distance.
 MARGIN = 0.1
@@ -23,6 +25,9 @@ MARGIN = 0.1
 NO_PEAK = math.sqrt(0.5)
 # Points of one turn of the runout, and turns where an order is no integer.
 POINTS, TURNS = 2000, 20
+
+
+GUIDE = "Hayden & Keller, NASA CR-120997 (1974)"
 
 
 class Verdict(StrEnum):
@@ -339,3 +344,43 @@ def _tilting(ring, speed: float, turned, own: float):
     uneven = ring.support.tilt_difference() * np.exp(2j * ring.support.tilt_axis)
     springs = ring.support.tilt()[0] * stretched + uneven * stretched.conj()
     return springs - ring.transverse_inertia * speed**2 * turned
+
+
+@dataclass(frozen=True)
+class Rule:
+    """A design rule: `judge(seal, limit)` gives its `Finding`, of a figure in `unit` (SI) against the `limit` (SI: one
+    number, least and most, or a table; None: there is none); `source` is what of the guide its numbers are, `command`
+    tests it ("" if nothing does)."""
+
+    judge: Callable
+    limit: object
+    unit: str
+    source: str
+    command: str = ""
+    guide: str = GUIDE
+
+
+def rows(rules: dict[str, Rule], seal, acknowledge: dict[str, str]) -> list[dict]:
+    """`findings` by a table of rules, by name, for what they judge; `acknowledge` {rule: reason}."""
+    return [plain(_row(name, rule, rule.judge(seal, rule.limit), acknowledge.get(name)))
+            for name, rule in sorted(rules.items())]  # fmt: skip
+
+
+def _row(name: str, rule: Rule, finding: Finding, reason: str | None) -> dict:
+    if reason is not None and finding.verdict in (Verdict.FAIL, Verdict.NOTE):
+        finding = replace(finding, verdict=Verdict.ACKNOWLEDGED)
+    unit = rule.unit if finding.unit is None else finding.unit
+    return {
+        "rule": name,
+        "verdict": str(finding.verdict),
+        "value": finding.value,
+        "unit": "" if finding.value is None else unit,
+        "least": finding.least,
+        "most": finding.most,
+        "guide": rule.guide,
+        "source": rule.source,
+        "said": finding.sentence,
+        "command": rule.command,
+        "reason": reason,
+        **finding.numbers,
+    }

@@ -162,7 +162,7 @@ def _rule_lines(rows) -> list[str]:
     order = ("fail", "acknowledged", "note", "pass", "not applicable")
     count = [row["verdict"] for row in rows].count
     counts = ", ".join(f"{count(verdict)} {verdict}" for verdict in order if count(verdict))
-    out = [f"design rules of {rows[0]['guide']}: {counts}"]
+    out = [f"design rules of {' and '.join(dict.fromkeys(row['guide'] for row in rows))}: {counts}"]
     for row in sorted(rows, key=lambda row: order.index(row["verdict"])):
         words = f"{row['said']} ({row['source']})" if row["verdict"] != order[-1] else row["said"]
         words += f"; reason: {row['reason']}" if row["reason"] else ""

@@ -352,9 +352,9 @@ def _follow(kind: type, raw: Any, location: tuple, keep_last: bool) -> tuple[lis
 
 
 FACE_RULES = (
-    "axial_travel", "balance", "coking", "face_pressure", "face_width", "film_thickness", "finish", "flatness",
-    "gear_resonance", "hang_up", "heat", "leakage", "life", "lubricant_side", "misalignment", "pressure_velocity",
-    "runout", "seal_temperature", "seal_type", "shaft_resonance", "sliding_speed",
+    "axial_travel", "balance", "choking", "coking", "face_pressure", "face_width", "film_stiffness", "film_thickness",
+    "finish", "flatness", "gear_resonance", "hang_up", "heat", "leakage", "life", "lubricant_side", "misalignment",
+    "pressure_velocity", "runout", "seal_temperature", "seal_type", "shaft_resonance", "sliding_speed",
 )  # fmt: skip
 LIP_RULES = ("lip_eccentricity", "lip_load", "lip_pressure", "lip_speed", "seal_type")
 CIRCUMFERENTIAL_RULES = (

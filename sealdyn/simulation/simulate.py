@@ -41,7 +41,7 @@ def simulate(
     resume: bool = False,
     allow_large: bool = False,
 ) -> Result:
-    """Run a scenario into an archive.
+    """Run a scenario into an archive: what `sealdyn.run` does below its `Result`.  **Deprecated** as a door: call that.
 
     `scenario` from `read_scenario`; `out` the archive's path (default outputs/<name>.h5); `progress(t, end)` is
     called as time advances (s); `stop()` returning true ends the run cleanly; `resume` goes on where an

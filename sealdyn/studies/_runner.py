@@ -138,7 +138,8 @@ def run_study(
     progress: Callable[[float, float, str], None] | None = None,
     leave_out: Iterable[str] = (),
 ) -> dict[str, Any]:
-    """Run study `name` (hyphens or underscores) on a scenario; returns its answer with `archive` added.
+    """Run study `name` (hyphens or underscores) on a scenario; returns its answer with `archive` added: what
+    `sealdyn.study` does below its `Answer`.  **Deprecated** as a door: call that.
 
     `flags` override the scenario's `[study.NAME]`; an interrupted study goes on from its journal beside `out`.
     Points are evaluated by `workers` processes (None: all cores), or by the workers of a Dask `scheduler`: its address

@@ -9,6 +9,7 @@ import pytest
 import sealdyn
 from sealdyn import studies
 from sealdyn.analysis.design_rules import RULES
+from sealdyn.analysis.gas_rules import OF_GAS
 from sealdyn.quantities import reading_in
 from sealdyn.report.summary import run_answer
 from sealdyn.report.text import lines, written_units
@@ -79,4 +80,4 @@ def test_times_in_the_readme_are_those_beside_the_studies(name):
 def test_every_rule_is_in_the_table_of_the_readme():
     page = (Path(__file__).parents[2] / "scenarios" / "README.md").read_text()
     section = page.split("## Design rules")[1].split("\n## ")[0]
-    assert re.findall(r"^\| `(\w+)`", section, re.MULTILINE) == sorted(RULES)
+    assert re.findall(r"^\| `(\w+)`", section, re.MULTILINE) == [*sorted(RULES), *sorted(OF_GAS)]
