@@ -140,7 +140,7 @@ def _study(path: Path) -> dict:
     study = read_study(path)
     answer = study["answer"]
     with reading_in(answer["written"]):
-        tables = [[*zip(*table_columns(table, MOST_ROWS), strict=True)] for table in answer["tables"]]
+        columns = [table_columns(table, MOST_ROWS) for table in answer["tables"]]
     return {
         "kind": f"study {study['study']}",
         "name": study["name"],
@@ -155,7 +155,7 @@ def _study(path: Path) -> dict:
         "film": "",
         "validation": [],
         "verdict": [told(words) for words in answer["verdict"]],
-        "tables": [rows for rows in tables if rows],
+        "tables": [[[told(cell) for cell in row] for row in zip(*table, strict=True)] for table in columns if table],
         "scene": list(_scene(study["resolved"])),
         "scenario": study["scenario"],
         "made": _made(path, study),
