@@ -8,6 +8,7 @@ import json
 import os
 import zlib
 from contextlib import contextmanager
+from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
 
@@ -313,6 +314,7 @@ def open_run(path: str | os.PathLike):
     """The archive as a lazily loaded `xarray.Dataset`: series over `time` with units, fields over `field_time` and
     their grid; `attrs` hold the scenario text, status, message, and `resolved` and `summary` as JSON."""
     import xarray
+    from xarray.backends import CachingFileManager, H5NetCDFStore
 
     with opened_run(path) as (file, record):
         name = file.filename
@@ -320,9 +322,25 @@ def open_run(path: str | os.PathLike):
         # The run has ended meanwhile, and its file has another name.
         return open_run(path)
     try:
-        dataset = xarray.open_dataset(name, engine="h5netcdf", decode_times=False)
+        store = H5NetCDFStore(CachingFileManager(_of_known_lengths, name, mode="r"), mode="r")
+        dataset = xarray.open_dataset(store, decode_times=False)
     except READING_ERRORS as error:
         raise ArchiveError(f"{path}: damaged ({' '.join(str(error).split())[:200]})") from error
     counts = {"time": record["rows"], FIELD_TIME: record["instants"]}
     dataset = dataset.isel({name: slice(0, count) for name, count in counts.items() if name in dataset.dims})
     return dataset.assign_attrs(rows=record["rows"])
+
+
+def _of_known_lengths(name: str, mode: str):
+    """The file by h5netcdf, which looks through all series for the length of a dimension that can grow whenever it is
+    asked for it, some hundred times as a file is opened: here once."""
+    import h5netcdf
+    from h5netcdf.dimensions import Dimension
+
+    class Known(Dimension):
+        size = cached_property(Dimension.size.fget)
+
+    file = h5netcdf.File(name, mode, decode_vlen_strings=True)
+    for dimension in file.dimensions.values():
+        dimension.__class__ = Known
+    return file

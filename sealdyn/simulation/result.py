@@ -13,6 +13,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from .. import __version__
+from ..archive.files import mark_sound
 from ..extensions import digest
 from ..kernel_cache import solvers_digest
 
@@ -105,6 +106,7 @@ def at_hand(archive: Path | None, content: bytes | None) -> Iterator[Path]:
     with TemporaryDirectory() as folder:
         path = Path(folder) / "archive.h5"
         path.write_bytes(content)
+        mark_sound(path)
         yield path
 
 

@@ -17,7 +17,7 @@ from killed import mark_first
 from sealdyn.archive import ArchiveError, column, field, partial_path, read_info
 
 # Both rings' forcing, no sample beyond need: seconds of solving.
-LONG = settings({"run.turns": 5000, "run.samples_per_turn": 8})
+LONG = settings({"run.turns": 2000, "run.samples_per_turn": 8})
 SCALES = {"rotor_z": 1e-5, "rotor_tilt_x": 1e-5 / 0.04, "rotor_tilt_y": 1e-5 / 0.04, "h_min": 1e-5, "time": 1.0}
 PRESSURE = 5e5
 
@@ -86,7 +86,7 @@ def test_interrupt_ends_cleanly(interrupted):
     assert "--continue" in answer.err and "Traceback" not in answer.err
     info = read_info(interrupted["folder"] / answer.found["archive"])
     assert info["status"] == "interrupted"
-    assert 300 < info["rows"] < 40001
+    assert 300 < info["rows"] < 16001
     assert info["summary"]["end"]["time"] < info["summary"]["end"]["asked"]
 
 
@@ -117,10 +117,10 @@ def test_an_interrupted_run_goes_on_to_where_an_unbroken_one_ends(interrupted, u
 SOON = 10.0
 SWEEP = ["sweep", SCENARIOS / "fms_reference.toml", *settings({"run.turns": 3000}), "--vary",
          "rotor.runout=0.01 mrad:0.1 mrad:400", "--outputs", "energy_residual", "--workers", 2]  # fmt: skip
+# Points one after the other in one process, single points on two, and many at once on two.
 STUDIES = {
+    "steady-state": ["steady-state", SCENARIOS / "fms_reference.toml", "--approach", "0.5,0.8,0.9", "--workers", 1],
     "sweep": SWEEP,
-    "steady-state": ["steady-state", SCENARIOS / "fms_reference.toml", "--workers", 1],
-    "critical-speed": ["critical-speed", SCENARIOS / "fmsr_both_flexible.toml", "--workers", 1],
     "tolerance": ["tolerance", SCENARIOS / "tolerance.toml", "--workers", 2],
 }
 
@@ -137,7 +137,9 @@ def points_in(journal) -> int:
 
 
 @pytest.mark.parametrize(
-    "name, number", [*((name, signal.SIGTERM) for name in STUDIES), ("sweep", signal.SIGINT)], ids=str
+    "name, number",
+    [("steady-state", signal.SIGTERM), ("sweep", signal.SIGINT), ("tolerance", signal.SIGTERM)],
+    ids=str,
 )
 def test_a_study_ends_soon_and_says_what_is_kept(tmp_path, name, number):
     journal = tmp_path / "x.partial.jsonl"
@@ -260,7 +262,7 @@ def test_a_run_is_interrupted_while_it_is_done_once_more(tmp_path):
     words = [
         "run",
         SCENARIOS / "massless_ring.toml",
-        *settings({"run.turns": 5000, "run.samples_per_turn": 16}),
+        *settings({"run.turns": 2000, "run.samples_per_turn": 16}),
         "--no-plot",
         "--json",
     ]

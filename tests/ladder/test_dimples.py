@@ -130,7 +130,7 @@ def test_dimples_that_cannot_be(key, changes):
 def test_a_run_begins_where_the_aligned_film_is():
     """Aligned, one dimple for all of them; what is steady stays."""
     scene = seal()
-    done = run(scene, 0.1, accuracy=1e-6, method="ida")
+    done = run(scene, 0.01, accuracy=1e-6, method="ida")
     assert pattern_of(ROW) == DIMPLES
     found = aligned_film(scene, 3e-6, 4).fine
     assert done["film_force"][0] == pytest.approx(found.force, rel=2e-3)

@@ -51,7 +51,7 @@ speed = "1 rad/s"
 [film]
 {FACES_TOML}
 outer_pressure = "1 bar"
-gas_reynolds = {{ slip = true }}
+gas_reynolds = {{ slip = true, columns = 4 }}
 [contact]
 roughness = "0.1 um"
 compressive_strength = "300 MPa"
@@ -225,8 +225,8 @@ def test_a_start_and_a_stop_in_time():
     """From one held speed to another and back, the lands lift and come down; a ramp so slow passes through states that
     are nearly held, the lift a little late."""
     lift = lifts_at(pressed())
-    ramp = PiecewiseLinear((0.0, 0.5, 0.55, 1.05), (0.9 * lift, 1.2 * lift, 1.2 * lift, 0.9 * lift))
-    done = run(pressed(ramp), duration=1.05, accuracy=1e-3, method="ida", per_turn=128)
+    ramp = PiecewiseLinear((0.0, 0.35, 0.4, 0.75), (0.9 * lift, 1.2 * lift, 1.2 * lift, 0.9 * lift))
+    done = run(pressed(ramp), duration=0.75, accuracy=1e-3, method="ida", per_turn=128)
     assert done.outcome.status == "ok" and done.outcome.energy_residual < 1e-6
     gap = done.model.clearance + done.q[:, 0]
     speed = np.interp(done.times, ramp.time, ramp.value)
@@ -250,9 +250,9 @@ def test_the_impulse_of_contact_is_that_of_its_force():
 
 def test_one_pitch_stands_for_all_where_nothing_tilts():
     """The same start with a tilt of nothing, for which the whole circle is computed."""
-    speed, ends = PiecewiseLinear((0.0, 0.02), (20.0, 120.0)), []
+    speed, ends = PiecewiseLinear((0.0, 0.01), (20.0, 120.0)), []
     for tilt in (0.0, 1e-12):
-        done = run(pressed(speed, tilt), duration=0.02, accuracy=1e-4, method="ida", per_turn=64)
+        done = run(pressed(speed, tilt), duration=0.01, accuracy=1e-4, method="ida", per_turn=64)
         ends.append((len(done.model.unknowns.film_unknowns.names), done.q[-1, 0]))
     assert 12 * ends[0][0] == ends[1][0]
     assert ends[0][1] == pytest.approx(ends[1][1], rel=1e-4) and ends[0][1] > 1e-8
@@ -281,4 +281,4 @@ def test_small_motion_of_lands_that_touch_is_refused(tmp_path):
     roots = RootsOverSpeed(frozen_at_start(read_scenario(path).scene))
     with pytest.raises(SceneError) as refused:
         roots(10.0)
-    assert refused.value.key == "contact" and roots(100.0)["axial"] is not None
+    assert refused.value.key == "contact"

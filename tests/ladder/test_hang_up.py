@@ -72,7 +72,7 @@ def test_the_run_parts_where_the_rule_says_so(tmp_path, share, together):
     height of the asperities (measured over the spring: 4.7, 1.6, 0.68, 0.33, 0.21, 0.13 um at 0.8, 0.9, 0.95, 1.05,
     1.1, 1.2 times the rule; without air in the gap 1.26 and 0.29 um at 0.95 and 1.05)."""
     needed = rule()["needed"]
-    result = simulate(read_scenario(SCENARIO, [f"closing.spring_force={share * needed} N", "run.turns=4"]),
+    result = simulate(read_scenario(SCENARIO, [f"closing.spring_force={share * needed} N", "run.turns=2"]),
                       tmp_path / "hang_up.h5")  # fmt: skip
     assert result.status == "ok"
     time, gap = (column(result.archive, name) for name in ("time", "axial_gap_change"))
@@ -83,4 +83,4 @@ def test_the_run_parts_where_the_rule_says_so(tmp_path, share, together):
     else:
         assert widest > 1e-6 and force.max() == 0.0
     assert result.summary["energy_residual"] < 10 * 1e-5
-    assert result.summary["secondary_seal"]["slips"] > 5
+    assert result.summary["secondary_seal"]["slips"] > 3

@@ -41,13 +41,13 @@ UNITS = {"[length]": 2.5, "[time]": 0.4, "[mass]": 1.7}
 
 
 def drawn(family, seed):
-    """A scene without dry friction, its duration (s), a turn and a half at most."""
+    """A scene without dry friction, its duration (s), half a turn at most."""
     random = np.random.default_rng(seed)
     while not (made := FAMILIES[family](random)).smooth:
         pass
     scene = made.scene
     speed = scene.shaft.speed.value[0] if isinstance(scene.shaft.speed, PiecewiseLinear) else scene.shaft.speed
-    return scene, min(made.duration, 3 * math.pi / abs(speed))
+    return scene, min(made.duration, math.pi / abs(speed))
 
 
 def floating_stator(family):

@@ -19,10 +19,9 @@ def errors(kind, number, seed=SEED):
     [
         pytest.param("rub", 18, marks=pytest.mark.core),
         pytest.param("gas_rub", 1, marks=pytest.mark.slow),
-        pytest.param("gas_waves", 4, marks=pytest.mark.core),
         ("gas_pads", 3),
         ("liquid_waves", 2),
-        ("gas_continued", 4),
+        pytest.param("gas_continued", 4, marks=pytest.mark.core),
         pytest.param("torn_continued", 3, marks=pytest.mark.slow),
     ],
 )

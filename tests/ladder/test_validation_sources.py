@@ -122,7 +122,6 @@ def test_the_print_is_more_than_full_pressure_on_the_dam(dams):
     assert all("206.7" in row["remark"] for row in forces if row["tilt"] and row["published"])
 
 
-@pytest.mark.slow
 def test_driven_waves_of_an_elastic_ring(checks):
     """What eq. 3-12 gives within 2 % of what is legible, folds that the grid of the print explains, other optima."""
     rows = [row for row in checks if row["source"].endswith("ch. 3")]

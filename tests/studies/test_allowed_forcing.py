@@ -21,17 +21,17 @@ INNER, OUTER, HALF, STRENGTH, CONING = 0.032, 0.040, 3e-7, 100e6, 60e-6
 def largest_pressure(tilt):
     """Contact pressure (Pa) at the thinnest place of faces `tilt` (rad) out of square that carry the closing force: the
     film of every angle by itself, that of a cone (its wedge adds and takes away the same), and asperities."""
-    theta = 2.0 * np.pi * (np.arange(180) + 0.5) / 180
+    theta = 2.0 * np.pi * (np.arange(90) + 0.5) / 90
     node, share = np.polynomial.legendre.leggauss(24)
     r = 0.5 * (INNER + OUTER) + 0.5 * (OUTER - INNER) * node
-    area = 0.5 * (OUTER - INNER) * share * r * 2.0 * np.pi / 180
+    area = 0.5 * (OUTER - INNER) * share * r * 2.0 * np.pi / 90
 
     def gap(clearance):
         return clearance + CONING * (r - INNER) + tilt * r * np.cos(theta)[:, None]
 
     def excess(clearance):
         h = gap(clearance)
-        along = np.linspace(INNER, OUTER, 2001)
+        along = np.linspace(INNER, OUTER, 501)
         thick = np.maximum(clearance + CONING * (along - INNER) + tilt * along * np.cos(theta)[:, None], 0.3 * HALF)
         resistance = np.cumsum(1.0 / (thick**3 * along), axis=1)
         pressed = 1e5 + 3e5 * resistance / resistance[:, -1:]
@@ -79,7 +79,7 @@ GAS = ["film.gas_reynolds={cells=[6, 16]}", "run.accuracy=0.05", "stator.misalig
 @pytest.mark.slow
 def test_a_film_that_stores_touches_at_the_end_of_a_ramp():
     """A ring that does not follow: the faces meet where the tilt closes the gap at the inner radius, opening or not."""
-    stubborn = "stator.support={axial_stiffness=1e11, axial_damping=60, tilt_stiffness=1e9}"
+    stubborn = "stator.support={axial_stiffness=1e10, axial_damping=1e5, tilt_stiffness=1e7, tilt_damping=10}"
     scenario = read_scenario(SCENARIOS / "gas_reynolds_reference.toml", [*GAS, stubborn])
     closes = 4e-6 / 0.060
     found = ramped(scenario, "rotor.runout", closes, 1e-2, 0.0)

@@ -22,7 +22,7 @@ SMALL = {
     "contact-onset": ("fms_reference", {"stator.misalignment": 0},
                       {"margin": 0.6, "over": "film.coning", "values": "2 mrad"}),
     "critical-speed": ("fms_reference", {}, {"turns": 20, "speeds": 1}),
-    "elastic-ring": ("lebeck_elastic", {"film.reynolds.cells_r": 6, "film.reynolds.cells_theta": 108}, {}),
+    "elastic-ring": ("lebeck_elastic", {"film.reynolds.cells_r": 4, "film.reynolds.cells_theta": 72}, {}),
     "equilibrium": ("run_in", {}, {"points": 21}),
     "failures": ("fms_reference", {}, {"items": 3}),
     "followability": ("circumferential_reference", {}, {"runs": 1, "speed": "9000,12000 rpm"}),
@@ -46,7 +46,7 @@ SMALL = {
     "wave-design": ("lebeck_driven", {"film.reynolds.cells_r": 4, "film.reynolds.cells_theta": 180},
                     {"orders": [9], "rings": 5, "points": 7}),
     "wear": ("run_in", {}, {"duration": "30 min"}),
-    "work-precision": ("fmr_reference", {"run.turns": 2}, {"tolerances": 2, "tightest": 1e-4, "repeats": 1,
+    "work-precision": ("fmr_reference", {"run.turns": 1}, {"tolerances": 2, "tightest": 1e-4, "repeats": 1,
                                                            "samples": 20}),
 }  # fmt: skip
 # Axes that are longer have a name.

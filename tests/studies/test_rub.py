@@ -159,7 +159,7 @@ def test_whirl_that_settles_in_a_rub_is_a_relative_equilibrium():
 @pytest.mark.slow
 def test_chaotic_rub_two_methods_agree(tmp_path):
     """Period 6 at 0.4 mrad, chaos at 0.55: exponent positive by both methods, averages the same, trajectories not."""
-    flags = {"values": "0.4:0.55 mrad:2", "drop": 60, "keep": 64, "exponent_turns": 60, "judge_turns": 100}
+    flags = {"values": "0.4:0.55 mrad:2", "drop": 40, "keep": 48, "exponent_turns": 40, "judge_turns": 60}
     answer = run_study("rub", read("rub_chaotic"), tmp_path / "c.h5", flags=flags)
     assert answer["rows"][0]["class"] == "period 6"
     assert answer["rows"][-1]["class"] == "chaotic"

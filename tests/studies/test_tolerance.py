@@ -491,7 +491,7 @@ def test_an_interrupted_study_goes_on(tmp_path, closed_form):
 def test_a_killed_study_goes_on_without_repeating(tmp_path):
     command = [
         *COMMAND, "tolerance", str(PATH), "--scatter", "rotor.runout=normal(5 urad)", "--samples", "16", "--set",
-        "run.turns=400", "--out", str(tmp_path / "t.h5"), "--workers", "1", "--no-plot", "--json",
+        "run.turns=150", "--out", str(tmp_path / "t.h5"), "--workers", "1", "--no-plot", "--json",
     ]  # fmt: skip
     journal = tmp_path / "t.partial.jsonl"
     kill_midway(command, journal, 2)

@@ -222,12 +222,11 @@ def test_its_figure_is_drawn(run_in):
     assert text_trouble(draw(run_in[1])) == ([], [])
 
 
-@pytest.mark.parametrize(("accuracy", "allowed"), [(1e-2, 0.2), pytest.param(1e-3, 0.05, marks=pytest.mark.slow)])
-def test_halving_the_step_changes_less_than_the_accuracy(accuracy, allowed):
+def test_halving_the_step_changes_less_than_the_accuracy():
     """Profiles, at the same hour on the way, of steps half as long."""
     scene = pressed(coning=3e-5, pressure=2e5)
-    ends = [history(scene, 10.0, accuracy, step)[1][-1][0].depth for step in (allowed, allowed / 2)]
-    assert 0.0 < np.max(np.abs(ends[0] - ends[1])) < accuracy * ROUGH
+    ends = [history(scene, 4.0, 1e-3, step)[1][-1][0].depth for step in (0.05, 0.025)]
+    assert 0.0 < np.max(np.abs(ends[0] - ends[1])) < 1e-3 * ROUGH
     assert np.max(ends[0]) > ROUGH
 
 
@@ -265,7 +264,7 @@ def test_asked_to_go_on_it_wears_to_the_end_in_few_steps(run_in, tmp_path):
 @pytest.mark.slow
 def test_a_misaligned_seal_wears_by_averages_over_turns(tmp_path):
     """The rubbing reference seal: its thin edge wears; the average is that of a long run of the same scene."""
-    flags = {"duration": "0.2 h", "nodes": 5}
+    flags = {"duration": "0.15 h", "nodes": 5}
     scenario = read("rub", "contact.stator_wear_coefficient=1e-17 1/Pa")
     answer = run_study("wear", scenario, tmp_path / "rub.h5", flags=flags, workers=1)
     assert (answer["status"], answer["end"]["kind"]) == ("ok", "duration")
@@ -280,10 +279,10 @@ def test_a_misaligned_seal_wears_by_averages_over_turns(tmp_path):
 @pytest.mark.slow
 def test_halving_the_step_of_a_scene_that_moves_changes_less_than_the_accuracy():
     scene = read("rub", "contact.stator_wear_coefficient=1e-17 1/Pa").scene
-    radius = np.linspace(R_I, R_O, 7)
-    ends = [history(scene, 0.4, 1e-2, step, radius)[1][-1][0].depth for step in (0.4, 0.2)]
-    assert 0.0 < np.max(np.abs(ends[0] - ends[1])) < 1e-2 * ROUGH
-    assert np.max(ends[0]) > 0.5 * ROUGH
+    radius = np.linspace(R_I, R_O, 4)
+    ends = [history(scene, 0.1, 1e-2, step, radius)[1][-1][0].depth for step in (0.05, 0.025)]
+    assert 0.0 < np.max(np.abs(ends[0] - ends[1])) < 1e-3 * ROUGH
+    assert np.max(ends[0]) > 0.05 * ROUGH
 
 
 def _late(path, name) -> float:

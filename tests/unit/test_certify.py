@@ -117,7 +117,7 @@ def measured(ready, method, tolerance):
 def test_solver_error_is_neither_hidden_nor_made_up(method, accuracy):
     """A run done twice, against a run at 1e-12, in everything that is looked at: at least the true error, and below
     what was asked."""
-    ready = prepared(fms(), 20 * TURN, accuracy)
+    ready = prepared(fms(), 6 * TURN, accuracy)
     tolerance = tolerance_for(method, accuracy, ready.memory)
     seen, apart = measured(ready, method, tolerance)
     sharp = Comparison(ready.anew(), seen.times)

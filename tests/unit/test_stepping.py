@@ -39,14 +39,14 @@ def misses(state, data, index, scenario):
     return max(found)
 
 
-GAS = {"run.turns": 0.5, "film.gas_reynolds": {"cells": [6, 16]}, "run.accuracy": 1e-5}
+GAS = {"run.turns": 0.1, "run.samples_per_turn": 320, "film.gas_reynolds": {"cells": [6, 16]}, "run.accuracy": 1e-5}
 
 
 @pytest.mark.parametrize(("name", "changes", "factor"), [
-    ("fms_reference", {"run.turns": 3}, 3.0),
+    ("fms_reference", {"run.turns": 2}, 3.0),
     ("impact", {}, 3.0),
     ("gas_reynolds_reference", GAS, 3.0),
-    ("massless_ring", {"run.turns": 2}, 3.0),
+    ("massless_ring", {"run.turns": 1}, 3.0),
 ])  # fmt: skip
 def test_steps_of_any_size_make_the_run(name, changes, factor):
     """Of a liquid, with contact, of a film with unknowns, of a ring without mass; from a thousandth of the run to half
