@@ -187,7 +187,7 @@ def named_outside(raw: dict, name: str) -> tuple[tuple[str, str], ...]:
     for place, room in OUTSIDE.items():
         table, known = samples_at(raw, place), (Film if room == "films" else Load).__dataclass_fields__
         model = table.get("model")
-        for word in dict.fromkeys([model, *(key for key in table if key not in known and _is_table(table[key]))]):
+        for word in [model, *(key for key in table if key not in known and key != model and _is_table(table[key]))]:
             if not isinstance(word, str) or (room == "films" and word in (*own_film_names(), "auto")):
                 continue
             made = digest(room, word)

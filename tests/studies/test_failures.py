@@ -211,7 +211,7 @@ def drawn_texts(monkeypatch, order, samples):
     from sealdyn.report.charts import spectrum
 
     class Made:
-        turning, rows, turns = True, samples, np.arange(samples) / 64
+        turned, rows, turns = True, samples, np.arange(samples) / 64
 
         def has(self, *names):
             return True
