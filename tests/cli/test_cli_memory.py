@@ -34,6 +34,6 @@ def resident(turns: int, folder) -> float:
 @pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="reads the process status of Linux")
 def test_memory_does_not_grow_with_the_run(tmp_path):
-    short, long = resident(1000, tmp_path), resident(10000, tmp_path)
-    assert long < short + 15
+    short, long = resident(1000, tmp_path), resident(6000, tmp_path)
+    assert long < short + 9
     assert long < 400

@@ -444,7 +444,7 @@ def test_the_row_of_an_independent_prototype():
     for columns in (8, 16):
         table = replace(GAS, gas_reynolds=GasReynolds(columns=columns))
         scene = seal(table, TWELVE, stator={"misalignment": 4e-5}, rotor={"runout": 2e-5})
-        done = run(scene, 2, accuracy=1e-3, method="ida", per_turn=256)
+        done = run(scene, 2, accuracy=3e-3, method="ida", per_turn=256)
         last = done.times > 2.0 * math.pi / W
         tilt, gap = (part[last] for part in relative(done, 2e-5))
         found.append([abs(tilt).max(), abs(tilt).min(), (3e-6 + gap - R_O * abs(tilt)).min(), gap.mean()])

@@ -45,7 +45,7 @@ def test_the_threshold_over_plain_grooves_is_the_closed_form():
 @pytest.fixture(scope="module")
 def scenario(tmp_path_factory):
     """The seal of row gas_5bar on six grooves and coarse cells, with a closing force of its own."""
-    text = SEAL_TOML.replace("count = 12", "count = 6").replace("[film]", "[film]\ngas_reynolds.columns = 8")
+    text = SEAL_TOML.replace("count = 12", "count = 6").replace("[film]", "[film]\ngas_reynolds.columns = 6")
     path = tmp_path_factory.mktemp("grooves") / "six.toml"
     path.write_text(text, encoding="utf-8")
     return read_scenario(path)

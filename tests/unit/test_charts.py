@@ -58,11 +58,7 @@ ARCHIVES = archives()
 
 # The overview has a panel of every kind; alone the kinds are drawn of the archives that they draw in their own way.
 ALONE = {"full", "shaken", "collapsed", "one_row", "axial_only", "aligned", "bare", "pressed"}
-CHARTS = [
-    pytest.param(name, kind, marks=() if kind == "overview" or name in ALONE else pytest.mark.slow)
-    for name in ARCHIVES
-    for kind in KINDS
-]
+CHARTS = [(name, kind) for name in ARCHIVES for kind in KINDS if kind == "overview" or name in ALONE]
 
 
 @pytest.mark.parametrize("name, kind", CHARTS)

@@ -100,7 +100,7 @@ def test_starts(number):
 @pytest.mark.slow
 def test_runs():
     """A whole run by IDA, and by Radau in own words, both far sharper than the accuracy by which they are compared.
-    Four more: test_promises.py::test_gas_that_stores; any number: `python tests/benchmark/own_judgement.py --kind
+    Two more: test_promises.py::test_gas_that_stores; any number: `python tests/benchmark/own_judgement.py --kind
     gas_waves`."""
     drawn, _, scales, seal = scene_of(0)
     times = np.linspace(0.0, drawn.duration, 20, endpoint=False)
