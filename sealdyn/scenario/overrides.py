@@ -5,6 +5,7 @@ import dataclasses
 import re
 import tomllib
 from dataclasses import fields, is_dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -72,10 +73,16 @@ def _key(lines: list[str], column: int) -> str:
 LENGTH = Length.__metadata__[0]
 
 
+@lru_cache(4096)
+def _radii(kind: type, table: str = "") -> dict[str, str]:
+    """{key of a diameter: that of its radius} of a table, by its dotted path, of the dataclass `kind`."""
+    return diameters(tables(kind).get(table, {}))
+
+
 def radius_key(kind: type, key: str) -> str:
     """The dotted key of the radius, if `key` is that of its diameter; else `key`.  `kind`: the scenario's dataclass."""
     table, _, last = key.rpartition(".")
-    twin = diameters(tables(kind).get(without_indices(table), {})).get(last)
+    twin = _radii(kind, without_indices(table)).get(last)
     return f"{table}.{twin}" if twin else key
 
 
@@ -94,7 +101,7 @@ def with_radii(tree: Any, kind: type, name: str, wrong: list, path: str = "") ->
         if inner := table_in(keys.get(key)):
             tree[key], below = with_radii(tree[key], inner, name, wrong, f"{path}.{key}".strip("."))
             halved |= below
-    for diameter, radius in diameters(keys).items():
+    for diameter, radius in _radii(kind).items():
         if diameter in tree:
             try:
                 tree[radius] = _half(tree, diameter, radius, f"{path}.{diameter}", name)
