@@ -71,7 +71,8 @@ def _give_room(disk):
 
 
 def _too_many(code, error) -> str:
-    lines = [line for line in error.splitlines() if "WARNING" not in line and " of " not in line]
+    # Beside warnings and the bar of the progress.
+    lines = [line for line in error.splitlines() if "WARNING" not in line and "remaining: " not in line]
     return f"{len(lines)} lines" if code == 4 and len(lines) > 1 else ""
 
 
