@@ -82,6 +82,9 @@ def with_columns(
             if kept.get("file") != file:
                 columns = _columns((folder or Path()) / file, known, motion.get("titles"), _end(raw))
                 if table in over_time:
+                    if len(columns) > 2:
+                        found = f"{quoted(file)} with the columns {', '.join(columns)}"
+                        raise QuantityError(found, f"time and one of {', '.join(list(known)[1:])}")
                     columns = {column if column == "time" else "value": read for column, read in columns.items()}
                 elif "time" in known:
                     columns = _once(file, columns)

@@ -59,6 +59,7 @@ def test_an_archive_holds_the_numbers(tmp_path):
 @pytest.mark.parametrize("held, key", [
     ("time, speed (rpm)\n0, fast\n1, 2\n", "shaft.speed.file"),
     ("time, tilt (rpm)\n0, 1\n1, 2\n", "shaft.speed.file"),
+    ("time, speed (rpm), value (rpm)\n0, 1, 3\n1, 2, 4\n", "shaft.speed.file"),
     (None, "shaft.speed.file"),
     ("time, speed (rpm)\n1, 1\n0, 2\n", "shaft.speed"),
 ])  # fmt: skip
