@@ -12,6 +12,7 @@ from test_ludwig_released import RING, ready_scene
 from sealdyn.analysis import quasi_static
 from sealdyn.closed_form import ludwig_allen as la
 from sealdyn.closed_form import sealed_wedge
+from sealdyn.dynamics.interface import opening_law
 from sealdyn.scene.scene import SceneError
 from sealdyn.studies.sealing_number import released as free
 
@@ -80,6 +81,16 @@ def test_a_scene_gives_back_its_load(cavity):
         with pytest.raises(SceneError) as refused:
             free.ring_of(replace(scene, film=replace(scene.film, **change)))
         assert refused.value.key == f"film.{key}"
+
+
+@pytest.mark.parametrize("geometry", ["planar", "cylindrical"])
+def test_pressures_open_flat_faces_by_what_the_film_has_at_rest(geometry):
+    scene = sealed(ready_scene(NARROW), NARROW, 0.1, 0.4)
+    scene = replace(scene, film=replace(scene.film, geometry=geometry, inner_radius=0.04))
+    pressures = scene.film.inner_pressure, scene.film.outer_pressure
+    closing = scene.closing.spring_force + math.pi * (0.06025**2 - 0.04**2) * (0.7 * pressures[1] + 0.3 * pressures[0])
+    ring = free.ring_of(scene)
+    assert closing - ring.spring_force == pytest.approx(opening_law(scene)(1e-6, *pressures), rel=1e-9)
 
 
 @pytest.mark.parametrize("edges, q", [((0.0, 0.05), 1.34), ((0.05, 0.0), 1.34), ((0.03, 0.03), 1.33)])

@@ -1,5 +1,5 @@
 """Sealing number: does secondary-seal friction lubricate the faces?  Ludwig & Allen's closed form, their balance with
-the actual film, the same in time, and the ring let go, over F_s/F_d."""
+the actual film, the same in time, and the ring let go, over F_s/F_d; under sealed pressures too."""
 
 from dataclasses import dataclass, replace
 from functools import partial

@@ -4,6 +4,7 @@ film moments.  Does it keep the film that their closed form gives it?
 Their ring turns and its seat stands (FMR).  Where the seat turns and the ring stands (FMS) the ring nods along with it,
 a tilt that turns at the shaft's speed w: its friction is the same, and its transverse inertia pulls it out, I w^2 gamma
 against the support's K gamma.  So in place of K stands K - I w^2, of either sign; the film is that of the mirror.
+Under sealed pressures F_s is the closing force beyond what they open flat faces with: springs and balance alike.
 **Source** derived here, from the equations of motion (dynamics/equations.py) at a tilt gamma exp(i w t).
 
 What it must come to is worked out in `closed_form.ludwig_allen`; here the ring of a scene is run in time and what
