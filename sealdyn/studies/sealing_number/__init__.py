@@ -81,7 +81,7 @@ def run(scenario, settings, tools) -> Answer:
     released = tools.map(partial(release, scene), [{**how, **point} for point in points], "released")
     answer = {
         "seal": {**vars(ring), "sliding_speed": ring.sliding_speed, "spring_force": ring.spring_force,
-                 "edges": ring.edges},
+                 "edges": ring.edges._asdict()},
         "guide": own_guide(scene, ring),
         "least_force_ratio": closed.least_force_ratio(ring.edges),
         "least_attracting_force_ratio": closed.least_attracting_force_ratio(ring.edges),
@@ -244,7 +244,7 @@ def _guide(scene, told, ring) -> float:
 def _found(numbers) -> str:
     """What becomes of the released ring on its own support over the force ratio."""
     own, seal = _rows(numbers, OWN), numbers["seal"]
-    low, high = closed.film_range(numbers["guide"], sealed.Edges(*seal["edges"]))
+    low, high = closed.film_range(numbers["guide"], sealed.Edges(**seal["edges"]))
     fates: list[tuple[str, list]] = []
     for row in own:
         if not fates or fates[-1][0] != row["status"]:
