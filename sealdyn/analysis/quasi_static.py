@@ -3,7 +3,8 @@
 **Source** Ludwig & Allen, NASA TN D-8102 (1976), whose balance of spring force and of the moment about the diameter
 through thickest and thinnest film becomes two equations for h0, h1 and their rates.
 **Valid** no inertia; planar film of constant thickness over a narrow face (face width <= 0.02 mean radius for 1e-4);
-half-Sommerfeld cavitation: an estimate.  The seat is tilted by a fixed angle, the ring turns.
+half-Sommerfeld cavitation: an estimate.  The seat is tilted by a fixed angle, the ring turns.  Under sealed pressures
+the spring force is the closing load that the film at rest leaves, and a film's force what it has beyond that at rest.
 """
 
 import math
@@ -13,6 +14,7 @@ import numpy as np
 from scipy.optimize import root
 
 from ..closed_form import ludwig_allen as closed
+from ..closed_form.sealed_wedge import Edges
 from ..faces.geometry import (
     DZ,
     DZ_RATE,
@@ -20,9 +22,11 @@ from ..faces.geometry import (
     GAP_STATE_SIZE,
     GX,
     GX_RATE,
+    INNER_PRESSURE,
     MEAN_SPIN,
     MOMENT_X,
     MOMENT_Y,
+    OUTER_PRESSURE,
     VISCOSITY,
 )
 from ..films.radial import floored as radial
@@ -36,19 +40,23 @@ FILM_ERROR = 1e-10
 # Rates over speed times h0 below which a film has settled; h1/h0 that is no wedge; how far ahead
 # (of h0) a run that gave up is asked whether any rates are left.
 SETTLED, NO_WEDGE, AHEAD = 1e-8, 1e-6, 1e-3
+# Least force and moment, of those asked, that a root finder is told.
+FLAT = 1e-12
 NO_RATES = "no squeeze of the film, however fast, gives this friction moment with this spring force"
 
 
 @dataclass(frozen=True)
 class Ring:
-    """A seal of Ludwig & Allen's kind (SI).  The defaults have their group mu U dR^3 / F_s = 3.79e-13 m^2 and their
-    face width; what else their example had is lost."""
+    """A seal of Ludwig & Allen's kind (SI); sealed pressures above the cavity's.  The defaults have their group
+    mu U dR^3 / F_s = 3.79e-13 m^2 and their face width; what else their example had is lost."""
 
     mean_radius: float = 0.06
     face_width: float = closed.LUDWIG_ALLEN_FACE_WIDTH
     viscosity: float = 5e-3
     shaft_speed: float = 1000.0
     group: float = closed.LUDWIG_ALLEN_GROUP
+    inner_pressure: float = 0.0
+    outer_pressure: float = 0.0
 
     @property
     def sliding_speed(self) -> float:
@@ -57,19 +65,25 @@ class Ring:
 
     @property
     def spring_force(self) -> float:
-        """F_s (N), from the group."""
+        """F_s (N), from the group: what closes the faces beyond the film at rest."""
         return self.viscosity * self.sliding_speed * self.face_width**3 / self.group
 
+    @property
+    def edges(self) -> Edges:
+        """The pressures at both edges, over the load."""
+        per = self.mean_radius * self.face_width / self.spring_force
+        return Edges(per * self.inner_pressure, per * self.outer_pressure, self.face_width / self.mean_radius)
+
     def film(self) -> Film:
-        """Planar film, tilt taken at the mean radius, ambient and cavitation pressure zero."""
+        """Planar film, tilt taken at the mean radius, cavitation pressure zero."""
         half = 0.5 * self.face_width
         return Film(
             model="radial",
             inner_radius=self.mean_radius - half,
             outer_radius=self.mean_radius + half,
             viscosity=self.viscosity,
-            outer_pressure=0.0,
-            inner_pressure=0.0,
+            outer_pressure=self.outer_pressure,
+            inner_pressure=self.inner_pressure,
             clearance=math.sqrt(self.group),
             geometry="planar",
             tilt_radius="mean",
@@ -79,20 +93,23 @@ class Ring:
 
 
 class Wedge:
-    """The radial film of a ring, as a function of h0, h1 and their rates."""
+    """The radial film of a ring beyond that at rest, as a function of h0, h1 and their rates."""
 
     def __init__(self, ring: Ring):
         self.ring, film = ring, ring.film()
         self.clearance = film.clearance
         self.f, self.s = radial.parameters(film, film.clearance, FILM_ERROR), np.zeros(GAP_STATE_SIZE)
         self.s[MEAN_SPIN], self.s[VISCOSITY] = 0.5 * ring.shaft_speed, ring.viscosity
+        self.s[INNER_PRESSURE], self.s[OUTER_PRESSURE] = ring.inner_pressure, ring.outer_pressure
+        self.at_rest = 0.0
+        self.at_rest = self((self.clearance, 0.0))[0]
 
     def __call__(self, films, rates=(0.0, 0.0)) -> tuple[float, float, float]:
         """Force (N), sine and cosine moment (N m) for (h0, h1) in m and their rates in m/s."""
         s, radius = self.s, self.ring.mean_radius
         s[DZ], s[GX], s[DZ_RATE], s[GX_RATE] = films[0] - self.clearance, films[1] / radius, rates[0], rates[1] / radius
         radial.wrench(self.f, s)
-        return float(s[FORCE]), float(s[MOMENT_Y]), float(s[MOMENT_X])
+        return float(s[FORCE]) - self.at_rest, float(s[MOMENT_Y]), float(s[MOMENT_X])
 
 
 def static_residuals(force_ratio: float, films, ring: Ring | None = None, wedge: Wedge | None = None) -> np.ndarray:
@@ -117,9 +134,9 @@ def static_root(force_ratio: float, start, ring: Ring | None = None) -> tuple[fl
         return mean, mean / (1 + math.exp(-x[1]))
 
     share = start[1] / start[0]
-    # In logarithms force and moment are nearly linear in these.
+    # In logarithms force and moment are nearly linear in these; a film without a cavity has no force.
     found = root(
-        lambda x: np.log1p(static_residuals(force_ratio, films(x), ring, wedge)),
+        lambda x: np.log1p(np.maximum(static_residuals(force_ratio, films(x), ring, wedge), FLAT - 1)),
         [math.log(start[0]), math.log(share / (1 - share))],
         tol=1e-12,
     )
@@ -254,10 +271,11 @@ def _run(balance: _Balance, start, duration, accuracy, ended, sentence) -> Settl
     return Settling(status, message, times, films[:, 0], films[:, 1], rates, np.array(moments), evaluations)
 
 
-def _hung(force_ratio, why, where) -> str:
+def _hung(force_ratio, edges, why, where) -> str:
     return (
         f"hang-up: spring and secondary-seal friction are not balanced with F_s/F_d = {force_ratio:.4g} (a balance "
-        f"needs {closed.LEAST_FORCE_RATIO:.4f}, one that attracts {closed.LEAST_ATTRACTING_FORCE_RATIO:.4f}): {why}; "
+        f"needs {closed.least_force_ratio(edges):.4f}, one that attracts "
+        f"{closed.least_attracting_force_ratio(edges):.4f}): {why}; "
         f"{where}.  Less friction, more spring or a start closer to the seat."
     )
 
@@ -268,9 +286,9 @@ def quasi_static(
     """h0, h1 in time under spring force and sine moment, squeeze included, from `start` = (h0, h1) in m.
 
     Settles on `closed_form.ludwig_allen.equilibrium` for q above 1.7132; below it the balance repels (below 1.6211
-    there is none) and the run ends as "hang-up".  So does one that starts too thick, where friction holds it open:
-    squeezing acts alike on both halves of the circle, so the sine moment is at most that of a film wet all around,
-    twice the half film's.
+    there is none; under pressure both are less) and the run ends as "hang-up".  So does one that starts too thick
+    (under pressure 1 % too thick may be enough), where friction holds it open: squeezing acts alike on both halves of
+    the circle, so the sine moment is at most that of a film wet all around, twice the half film's.
     `carried_moment` is the cosine moment: nobody balances it.
     """
     ring = ring or Ring()
@@ -287,11 +305,11 @@ def quasi_static(
         if verdict == "settled":
             return "settled", f"settled {where}"
         if said == NO_RATES or (said and balance.none_ahead(film)):
-            return "hang-up", _hung(force_ratio, NO_RATES, where)
+            return "hang-up", _hung(force_ratio, ring.edges, NO_RATES, where)
         if verdict == "no wedge":
-            return "hang-up", _hung(force_ratio, "the wedge is gone", where)
-        if force_ratio <= closed.LEAST_FORCE_RATIO:
-            return "hang-up", _hung(force_ratio, said or "the film goes on moving", where)
+            return "hang-up", _hung(force_ratio, ring.edges, "the wedge is gone", where)
+        if force_ratio <= closed.least_force_ratio(ring.edges):
+            return "hang-up", _hung(force_ratio, ring.edges, said or "the film goes on moving", where)
         return (Status.FAILED, f"{said} ({where})") if said else ("moving", f"not settled {where}")
 
     return _run(balance, start, duration, accuracy, ended, sentence)

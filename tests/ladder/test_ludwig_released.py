@@ -105,7 +105,7 @@ def test_a_scene_gives_back_its_numbers():
     assert free.force_ratio_of(scene) == pytest.approx(3.3, rel=1e-12)
     assert vars(ring_of(scene)) == pytest.approx(vars(RING), rel=1e-9)
     with pytest.raises(SceneError, match=r"film\.cavitation_pressure"):
-        ring_of(replace(scene, film=replace(scene.film, outer_pressure=1e5)))
+        ring_of(replace(scene, film=replace(scene.film, cavitation_pressure=None)))
     with pytest.raises(SceneError, match="more than the tilt"):
         with_force_ratio(ready_scene(RING, misalignment=1e-3), 20.0, rr.closed_form_guide(20.0))
 

@@ -98,6 +98,27 @@ def test_chart_of_failed_points(tmp_path, monkeypatch):
     assert panels.draw(tmp_path / "none.h5", tmp_path / "none.png").exists()
 
 
+def test_a_sealed_pressure_is_answered(tmp_path):
+    """1 bar outside: F_s is what spring and balance press beyond the opening of flat faces (linear over the width), and
+    closed form, film and time agree to what a face of dR/R = 0.017 leaves."""
+    keys = ("film.outer_pressure=1 bar", "closing.balance_ratio=0.7", "closing.spring_force=90 N")
+    flags = {"force_ratios": 2.5, "starts": "closed form", "turns": 1, "last": 1}
+    answer = run_study("sealing-number", read(*keys), tmp_path / "p.h5", flags=flags, workers=1)
+    area, width = 2 * math.pi * 0.06 * 1.02e-3, 1.02e-3
+    load = 90 + 1e5 * area * (0.7 - 0.5 - width / (12 * 0.06))
+    assert answer["seal"]["spring_force"] == pytest.approx(load, rel=1e-9)
+    row = answer["balance"][0]
+    # Thicker than with ambient pressures: it tilts more.
+    assert row["closed_form"]["mean_film"] > 1.3 * math.sqrt(number(2.5) * 2e-3 * 300 * 0.06 * width**3 / load)
+    for name in ("static", "quasi_static"):
+        assert row[name]["mean_film"] == pytest.approx(row["closed_form"]["mean_film"], rel=1e-3), name
+    own, needed = answer["released"]
+    assert needed["foreseen"]["mean_film"] == pytest.approx(row["closed_form"]["mean_film"], rel=1e-6)
+    assert own["foreseen"] is None and answer["published"] == []
+    assert answer["least_force_ratio"] < answer["least_attracting_force_ratio"] < 16 / math.pi**2
+    assert answer["line"]["sealing_number"][-1] == pytest.approx(row["closed_form"]["sealing_number"], rel=1e-6)
+
+
 @pytest.mark.core
 def test_other_seals_are_refused(tmp_path):
     with pytest.raises(SceneError) as refused:

@@ -1,5 +1,5 @@
 """Sealing number: does secondary-seal friction lubricate the faces?  Ludwig & Allen's closed form, their balance with
-the actual film, the same in time, and the ring let go, over F_s/F_d."""
+the actual film, the same in time, and the ring let go, over F_s/F_d; under sealed pressures too."""
 
 from dataclasses import dataclass, replace
 from functools import partial
@@ -11,6 +11,7 @@ from pydantic import Field
 from ...analysis import quasi_static
 from ...answers import Answer, Axis, Level, Panel, Series, Table
 from ...closed_form import ludwig_allen as closed
+from ...closed_form import sealed_wedge as sealed
 from ...dynamics.model import Model
 from ...dynamics.warm_state import at_work
 from ...scene.rings import INERTIAL, STATOR
@@ -27,8 +28,9 @@ INFO = Info(
     along={"map": ("guide",), "over_speed": ("speed",)}
     | dict.fromkeys(("line", "foreseen", "map/closed_form", "balance", "published", "released"), ("force_ratio",)),
 )  # fmt: skip
-# Turns (radians of the shaft) a quasi-static run may take; how far above the balance it starts.
-RADIANS, ABOVE = 300.0, 1.02
+# Turns (radians of the shaft) a quasi-static run may take; where it starts, over the balance, and under pressure, where
+# a film a little thicker already hangs.
+RADIANS, ABOVE, BELOW = 300.0, 1.02, 0.98
 # Speeds at which films are foreseen.
 SPEEDS = 40
 RATIOS = (1.2, 1.3, 1.45, 1.6, 1.65, 1.72, 1.8, 2.0, 2.5, 3.0, 5.0, 10.0, 20.0)
@@ -74,26 +76,34 @@ def run(scenario, settings, tools) -> Answer:
         for support in (OWN, NEEDED)
         for start in starts
         for inertia in inertias
-        if support == OWN or q > closed.LEAST_FORCE_RATIO
+        if support == OWN or q > closed.least_force_ratio(ring.edges)
     ]
     released = tools.map(partial(release, scene), [{**how, **point} for point in points], "released")
     answer = {
-        "seal": {**vars(ring), "sliding_speed": ring.sliding_speed, "spring_force": ring.spring_force},
+        "seal": {**vars(ring), "sliding_speed": ring.sliding_speed, "spring_force": ring.spring_force,
+                 "edges": ring.edges._asdict()},
         "guide": own_guide(scene, ring),
-        "least_force_ratio": closed.LEAST_FORCE_RATIO,
-        "least_attracting_force_ratio": closed.LEAST_ATTRACTING_FORCE_RATIO,
+        "least_force_ratio": closed.least_force_ratio(ring.edges),
+        "least_attracting_force_ratio": closed.least_attracting_force_ratio(ring.edges),
         "balance": [{"force_ratio": q, **row} for q, row in zip(ratios, balances, strict=True)],
         "released": [{**point, **row} for point, row in zip(points, released, strict=True)],
         "published": [{"force_ratio": row.force_ratio, "mean_film": row.mean_film,
                        "sealing_number": row.mean_film**2 / closed.LUDWIG_ALLEN_GROUP}
-                      for row in closed.LUDWIG_ALLEN],
-        "line": _line(max(ratios)),
+                      for row in closed.LUDWIG_ALLEN if not ring.edges.sealed],
+        "line": _line(ring, max(ratios)),
         "foreseen": _foreseen_line(scene, ring, max(ratios)),
-        "map": _map(max(ratios)),
+        "map": _map(ring, max(ratios)),
         "over_speed": _over_speed(scene, ring),
     }  # fmt: skip
     notes = ["Their film, which the scene's has to be for the answer to be theirs, is flat and planar, constant over "
              "the face, its pressure ambient where it diverges."]  # fmt: skip
+    if ring.edges.sealed:
+        least, most, _ = sealed.moment_limits(ring.edges)
+        notes.append(f"Under the sealed pressure F_s is the {ring.spring_force:.4g} N of the closing force that the "
+                     "pressures between flat faces leave; the wedge cavitates over part of the width.")  # fmt: skip
+        if not most > least:
+            notes.append(f"A film that tilts more is held with less moment, from {least:.4g} R F_s between parallel "
+                         "faces on: a released ring keeps one only where h1/R nears the seat's tilt.")  # fmt: skip
     if free.pair_of(scene).floating == STATOR:
         notes.append("The seat turns: closed form and balance have the ring's friction alone, as theirs do; what is "
                      "foreseen and run has the inertia of its nodding too.")  # fmt: skip
@@ -106,15 +116,17 @@ def own_guide(scene, ring) -> float:
     return abs(pair.stiffness) * pair.tilt / (ring.mean_radius * ring.spring_force)
 
 
-def _line(highest) -> dict:
+def _line(ring, highest) -> dict:
     """The closed form as a line, dense where it rises."""
-    q = closed.LEAST_FORCE_RATIO * (1 + np.geomspace(1e-6, max(highest / closed.LEAST_FORCE_RATIO - 1, 0.1), 200))
-    return {"force_ratio": q.tolist(), "sealing_number": closed.sealing_number(q).tolist()}
+    least = closed.least_force_ratio(ring.edges)
+    q = least * (1 + np.geomspace(1e-6, max(highest / least - 1, 0.1), 100))
+    return {"force_ratio": q.tolist(), "sealing_number": closed.sealing_number(q, ring.edges).tolist()}
 
 
 def _foreseen_line(scene, ring, highest) -> dict:
     """The released ring's film on the scene's own support, where it has one."""
-    q = np.geomspace(4 / np.pi, min(closed.LEAST_FORCE_RATIO * 1.5, highest), 120)
+    least, most = closed.film_range(0.0, ring.edges)
+    q = np.geomspace(least, min(most * 1.5, max(highest, least)), 120)
     films, rest = [], Model(scene, 1e-3).clearance
     for ratio in q:
         try:
@@ -127,13 +139,14 @@ def _foreseen_line(scene, ring, highest) -> dict:
     return {"force_ratio": list(ratios), "sealing_number": list(numbers)}
 
 
-def _map(highest) -> dict:
+def _map(ring, highest) -> dict:
     """Where a released ring hangs up, rides and straightens, over the guide; and what the closed form needs."""
     guide = np.linspace(0.0, 1.0, 400, endpoint=False)
-    edges = np.minimum([closed.film_range(k) for k in guide], 10 * highest)
-    q = np.array(_line(highest)["force_ratio"])
-    return {"guide": guide.tolist(), "hang_up_below": edges[:, 0].tolist(), "straightens_above": edges[:, 1].tolist(),
-            "closed_form": {"force_ratio": q.tolist(), "guide": closed.amplitude_ratio(q).tolist()}}  # fmt: skip
+    ends = np.minimum([closed.film_range(k, ring.edges) for k in guide], 10 * highest)
+    q = np.array(_line(ring, highest)["force_ratio"])
+    return {"guide": guide.tolist(), "hang_up_below": ends[:, 0].tolist(), "straightens_above": ends[:, 1].tolist(),
+            "closed_form": {"force_ratio": q.tolist(),
+                            "guide": closed.closed_form_guide(q, ring.edges).tolist()}}  # fmt: skip
 
 
 def _over_speed(scene, ring) -> dict:
@@ -143,12 +156,12 @@ def _over_speed(scene, ring) -> dict:
     own, arm = pair.ring.support.tilt()[0], ring.mean_radius * ring.spring_force / pair.tilt
     inertia = (own - pair.stiffness) / ring.shaft_speed**2
     if inertia > 0.0:
-        most = ((arm + own) / inertia) ** 0.5
+        most = ((sealed.moment_limits(ring.edges)[1] * arm + own) / inertia) ** 0.5
     speeds, films = np.linspace(0.0, most, SPEEDS + 1)[1:], []
     guides = (inertia * speeds**2 - own) / arm
     for speed, guide in zip(speeds, guides, strict=True):
         try:
-            films.append(closed.film(q, float(guide), ring.group * speed / ring.shaft_speed))
+            films.append(closed.film(q, float(guide), ring.group * speed / ring.shaft_speed, ring.edges))
         except ValueError:
             films.append((None, None))
     mean, amplitude = zip(*films, strict=True)
@@ -171,9 +184,9 @@ def balance(scene, point: dict) -> dict:
     row = {"closed_form": None, "static": None, "static_said": ""}
     start = np.array(free.start_film(q, ring))
     try:
-        films = closed.equilibrium(q, ring.group)
+        films = closed.equilibrium(q, ring.group, ring.edges)
         row["closed_form"] = _films(*films, ring)
-        start = ABOVE * np.array(films)
+        start = (BELOW if ring.edges.sealed else ABOVE) * np.array(films)
         row["static"] = _films(*quasi_static.static_root(q, films, ring), ring)
     except ValueError as error:
         row["static_said"] = str(error)
@@ -190,7 +203,7 @@ def release(scene, point: dict) -> dict:
     floating = free.pair_of(scene).ring
     heavier = replace(floating, **{name: point["inertia"] * getattr(floating, name) for name in INERTIAL})
     scene = replace(scene, **{free.floating_name(scene): heavier})
-    guide = None if point["support"] == OWN else closed.closed_form_guide(q)
+    guide = None if point["support"] == OWN else float(closed.closed_form_guide(q, ring.edges))
     scene = free.started(free.with_force_ratio(scene, q, guide), point["start"])
     # Landing on the asperities may defeat a method at one accuracy and not at the next.
     for accuracy in (point["accuracy"], point["accuracy"] / 3, 3 * point["accuracy"]):
@@ -210,8 +223,8 @@ def release(scene, point: dict) -> dict:
         row["foreseen"] = _films(*free.film_on(scene)[:2], ring)
     except ValueError as error:
         row["foreseen_said"] = str(error)
-    if q > closed.LEAST_FORCE_RATIO:
-        was = _films(*closed.equilibrium(q, ring.group), ring)
+    if q > closed.least_force_ratio(ring.edges):
+        was = _films(*closed.equilibrium(q, ring.group, ring.edges), ring)
         row["ratio"] = {"mean_film": told.mean_film[0] / was["mean_film"],
                         "least_film": told.least_film[0] / was["least_film"],
                         "sealing_number": row["sealing_number"][0] / was["sealing_number"]}  # fmt: skip
@@ -230,7 +243,8 @@ def _guide(scene, told, ring) -> float:
 
 def _found(numbers) -> str:
     """What becomes of the released ring on its own support over the force ratio."""
-    own, low, high = _rows(numbers, OWN), *closed.film_range(numbers["guide"])
+    own, seal = _rows(numbers, OWN), numbers["seal"]
+    low, high = closed.film_range(numbers["guide"], sealed.Edges(**seal["edges"]))
     fates: list[tuple[str, list]] = []
     for row in own:
         if not fates or fates[-1][0] != row["status"]:
@@ -238,7 +252,8 @@ def _found(numbers) -> str:
         fates[-1][1].append(row["force_ratio"])
     words = ["{} at {}".format(fate, " to ".join(dict.fromkeys((f"{q[0]:g}", f"{q[-1]:g}")))) for fate, q in fates]
     said = ", ".join(words) or "no run ended"
-    return f"The released ring over F_s/F_d: {said}; foreseen a film from {low:.4g} to {high:.4g}."
+    foreseen = f"a film from {low:.4g} to {high:.4g}" if low < high else "no film"
+    return f"The released ring over F_s/F_d: {said}; foreseen {foreseen}."
 
 
 def _tables(numbers) -> list[Table]:

@@ -4,6 +4,7 @@ film moments.  Does it keep the film that their closed form gives it?
 Their ring turns and its seat stands (FMR).  Where the seat turns and the ring stands (FMS) the ring nods along with it,
 a tilt that turns at the shaft's speed w: its friction is the same, and its transverse inertia pulls it out, I w^2 gamma
 against the support's K gamma.  So in place of K stands K - I w^2, of either sign; the film is that of the mirror.
+Under sealed pressures F_s is the closing force beyond what they open flat faces with: springs and balance alike.
 **Source** derived here, from the equations of motion (dynamics/equations.py) at a tilt gamma exp(i w t).
 
 What it must come to is worked out in `closed_form.ludwig_allen`; here the ring of a scene is run in time and what
@@ -12,6 +13,7 @@ becomes of it is named.
 
 import math
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -19,7 +21,9 @@ from scipy.optimize import brentq
 
 from ...analysis import quasi_static
 from ...closed_form import ludwig_allen as closed
-from ...closed_form.ludwig_allen import LEAST_MOMENT, MOST_MOMENT, film, moment_ratio
+from ...closed_form import sealed_wedge as sealed
+from ...closed_form.ludwig_allen import film, moment_ratio
+from ...dynamics.equilibrium import closing_law
 from ...dynamics.model import Model
 from ...dynamics.run_state import RunState
 from ...dynamics.signals import signals
@@ -38,58 +42,75 @@ STRAIGHT, COUNTS, STEADY = 0.1, 0.01, 0.02
 # h1/h0 of a start where the closed form has no film; how far apart the faces of an open start are, of its tilt.
 START_SHARE, APART = 0.5, 1.01
 SAMPLES = 32
+# h1/h0 between which a film is sought.
+SHARES = 1 - np.geomspace(1, 1e-9, 61)[1:]
 
 
 # --- the film to be expected ------------------------------------------------------------------------------
 
 
+@lru_cache(maxsize=4096)
+def _film_of(e: float, ring: quasi_static.Ring, axial: float, rest: float) -> tuple[float, complex]:
+    """h0 (m) of the film h1/h0 = e that carries F_s and a spring of `axial` F_s (per m) that rests at h0 = `rest`
+    (m), and its moment over R F_s."""
+    number, sine, cosine = sealed.balance(e, ring.edges)
+    mean = math.sqrt(ring.group * number)
+    if axial and mean > rest:
+
+        def short(h):
+            return sealed.carried(e, h * h / ring.group, ring.edges)[0] - 1.0 - axial * max(h - rest, 0.0)
+
+        mean = brentq(short, 1e-3 * mean, mean * (1 + 1e-9), xtol=1e-14 * mean)
+        _, sine, cosine = sealed.carried(e, mean * mean / ring.group, ring.edges)
+    return mean, complex(cosine, sine)
+
+
 def film_on(scene, clearance: float | None = None) -> tuple[float, float, complex]:
     """h0, h1 (m) and the tilt (rad, complex, from the seat's direction) of a scene's ring on its film: its support is
     stretched by that tilt and by h0, and the ring tilts less than its seat until friction and support just hold the
-    film.  `clearance` (m): where the support's axial spring is at rest, if known (else found from the asperities).
+    film; of several such films the one with the least h1/h0.  `clearance` (m): where the support's axial spring is at
+    rest, if known (else found from the asperities).
     **Raises** ValueError as `film`."""
     ring, q, pair = ring_of(scene), force_ratio_of(scene), pair_of(scene)
-    found = _film_under(1.0, q, pair, ring)
+    stiffness, friction, seat = pair.stiffness / (ring.mean_radius * ring.spring_force), moment_ratio(q), pair.tilt
     axial = pair.ring.support.axial_stiffness / ring.spring_force
-    if axial == 0.0:
-        return found
-    rest = Model(scene, 1e-3).clearance if clearance is None else clearance
+    rest = Model(scene, 1e-3).clearance if clearance is None and axial else clearance or 0.0
 
-    def missing(load):
-        try:
-            return load - 1.0 - axial * (_film_under(load, q, pair, ring)[0] - rest)
-        except ValueError:
-            # Pressed so hard that it straightens.
-            return load - 1.0
-
-    most = 1.0 + axial * max(found[0] - rest, 0.0)
-    return _film_under(brentq(missing, 1.0, most, xtol=1e-15), q, pair, ring) if most > 1.0 else found
-
-
-def _film_under(load, q, pair, ring):
-    """`film_on` with `load` times the spring force; friction and support as they are."""
-    ring, q, seat = replace(ring, group=ring.group / load), load * q, pair.tilt
-    stiffness = pair.stiffness / (ring.mean_radius * ring.spring_force)
-
-    def seat_of(tilt):
+    def seat_of(tilt, amplitude, moment):
         """Tilt of the seat, from the direction of a ring of that tilt."""
-        mean, amplitude = film(q, stiffness * tilt, ring.group)
-        e = amplitude / mean
-        turned = (4j / (math.pi * q) - stiffness * tilt) / (1j * LEAST_MOMENT * math.sqrt((1 - e) * (1 + e)) - e)
+        turned = (1j * friction - stiffness * tilt) / moment
         return tilt + amplitude / ring.mean_radius * turned / abs(turned)
 
-    # With a stiff support only some tilts have a film; over a soft one all have, or none.
-    # Inertia, a negative one, draws the ring beyond its seat.
-    friction, low, high = moment_ratio(q), 0.0, seat if stiffness >= 0.0 else 2.0 * seat
-    if stiffness != 0.0:
-        low = math.sqrt(max(LEAST_MOMENT**2 - friction**2, 0.0)) / abs(stiffness) * (1 + 1e-12)
-        high = min(math.sqrt(max(MOST_MOMENT**2 - friction**2, 0.0)) / abs(stiffness) * (1 - 1e-12), high)
-    if low < high and abs(seat_of(high)) > seat > abs(seat_of(low)):
-        tilt = brentq(lambda x: abs(seat_of(x)) - seat, low, high, xtol=1e-14 * seat)
-        there = seat_of(tilt)
-        at = tilt * there.conjugate() / abs(there)
-        return *film(q, stiffness * tilt, ring.group), at if pair.floating == ROTOR else at.conjugate()
-    film(q, stiffness * seat, ring.group)
+    def at(e):
+        """h0, the moment, and the ring's tilt under its seat: 0 where the film alone tilts by more than the seat."""
+        mean, moment = _film_of(e, ring, axial, rest)
+        inside = e * mean / ring.mean_radius
+        tilt = 0.0
+        if inside < seat:
+            tilt = brentq(
+                lambda x: abs(seat_of(x, e * mean, moment)) - seat, 0.0, 1.01 * (seat + inside), xtol=1e-15 * seat
+            )
+        return mean, moment, tilt
+
+    def spare(e):
+        """What the film's moment has beyond friction and support, squared."""
+        _, moment, tilt = at(e)
+        return abs(moment) ** 2 - friction**2 - (stiffness * tilt) ** 2
+
+    # The least e at which the film's moment outgrows friction and support: only there a film attracts.
+    low, held = sealed.FLAT, spare(sealed.FLAT)
+    for high in SHARES:
+        last, held = held, spare(high)
+        if last < 0.0 < held:
+            e = brentq(spare, low, high, xtol=1e-15)
+            mean, moment, tilt = at(e)
+            if tilt == 0.0:
+                break
+            there = seat_of(tilt, e * mean, moment)
+            tilted = tilt * there.conjugate() / abs(there)
+            return mean, e * mean, tilted if pair.floating == ROTOR else tilted.conjugate()
+        low = high
+    film(q, stiffness * seat, ring.group, ring.edges)
     raise ValueError("hang-up: the film would tilt by more than the seat")
 
 
@@ -136,16 +157,15 @@ def ring_of(scene) -> quasi_static.Ring:
     turning, gives = initially(scene.stator.speed), seal is not None and seal.stiffness is not None
     own = initially(pair.ring.misalignment)
     stands = pair.floating == ROTOR or not turning
-    pressures = [initially(f.inner_pressure), initially(f.outer_pressure)]
-    floor = none if f.cavitation_pressure is None else f"{f.cavitation_pressure:g} Pa"
     slope = coned(scene).coning
     wanted = (
         (
             "film.cavitation_pressure",
-            f.cavitation_pressure == pressures[0] == pressures[1],
-            floor,
-            "the inner and the outer pressure",
+            f.cavitation_pressure is not None,
+            none,
+            "a pressure: an uncavitated wedge pulls as much as it pushes",
         ),
+        ("film.inertia", not f.inertia, "true", "none"),
         ("closing.spring_force", scene.closing.spring_force is not None, none, "a spring force and a balance ratio"),
         (f"{other}.support", getattr(scene, other).support is None, "two flexible rings", "one of them"),
         (f"{name}.support", pair.ring.support is not None, none, "a flexible ring"),
@@ -163,9 +183,26 @@ def ring_of(scene) -> quasi_static.Ring:
             raise SceneError(key, found, f"{expected} (a ring of Ludwig & Allen's kind)")
     radius, width = 0.5 * (f.inner_radius + f.outer_radius), f.outer_radius - f.inner_radius
     viscosity, speed = initially(f.viscosity), abs(initially(scene.shaft.speed))
+    inner, outer = initially(f.inner_pressure), initially(f.outer_pressure)
+    load = initially(scene.closing.spring_force)
     # With equal pressures whatever the balance ratio the fluid's closing is its ambient opening.
-    group = viscosity * speed * radius * width**3 / initially(scene.closing.spring_force)
-    return quasi_static.Ring(radius, width, viscosity, speed, group)
+    if inner != outer:
+        opening = _opening(f, inner, outer)
+        load = closing_law(scene, lambda *_: opening)[0].at(inner, outer, load) - opening
+        if not load > 1e-9 * opening:
+            expected = f"more than the {opening:.4g} N with which the pressures open flat faces"
+            raise SceneError("closing.spring_force", f"{opening + load:.4g} N of closing force with it", expected)
+    group = viscosity * speed * radius * width**3 / load
+    cavity = f.cavitation_pressure
+    return quasi_static.Ring(radius, width, viscosity, speed, group, inner - cavity, outer - cavity)
+
+
+def _opening(film, inner: float, outer: float) -> float:
+    """Force (N) of the pressures (Pa) between flat faces, 2 pi int p r dr, the circle's growth with r left in."""
+    r_i, r_o = film.inner_radius, film.outer_radius
+    mean_square = (r_o**2 + r_o * r_i + r_i**2) / 3 if film.geometry == "planar" else (
+        (r_o**2 - r_i**2) / (2 * math.log(r_o / r_i)))  # fmt: skip
+    return math.pi * (outer * r_o**2 - inner * r_i**2 - (outer - inner) * mean_square)
 
 
 def force_ratio_of(scene) -> float:
@@ -194,16 +231,16 @@ def with_force_ratio(scene, force_ratio: float, guide: float | None = None) -> S
 
 def _film_or_start(force_ratio, guide, ring):
     try:
-        return film(force_ratio, guide, ring.group)
+        return film(force_ratio, guide, ring.group, ring.edges)
     except ValueError:
         return start_film(force_ratio, ring)
 
 
 def start_film(force_ratio: float, ring: quasi_static.Ring) -> tuple[float, float]:
     """h0, h1 (m) of the closed form, or where it has none a wedge that carries the spring at h1/h0 = 1/2."""
-    if force_ratio > closed.LEAST_ATTRACTING_FORCE_RATIO:
-        return tuple(float(h) for h in closed.equilibrium(force_ratio, ring.group))
-    mean = math.sqrt(ring.group * START_SHARE) / (1 - START_SHARE**2)
+    if force_ratio > closed.least_attracting_force_ratio(ring.edges):
+        return tuple(float(h) for h in closed.equilibrium(force_ratio, ring.group, ring.edges))
+    mean = math.sqrt(ring.group * sealed.balance(START_SHARE, ring.edges)[0])
     return mean, START_SHARE * mean
 
 
