@@ -36,7 +36,8 @@ except SystemExit as end:
 # Scenario -> what shortens it and its beginning; outputs of many runs at once, with integrals over time and without.
 KINDS = {
     "hang_up": {"run.turns": 0.1}, "film_by_numbers": {"run.turns": 0.1},
-    "circumferential_reference": {"run.turns": 0.1},
+    "circumferential_reference": {"run.turns": 0.1}, "giving_o_ring": {"run.turns": 0.1},
+    "rub": {"run.turns": 0.1, "film.model": "profiled"},
     "lebeck_n3": {"run.turns": 0.01, "film.reynolds": {"cells_r": 5, "cells_theta": 36, "grid_accuracy": 1.0}},
     "gas_reynolds_reference": {"run.turns": 0.01, "run.accuracy": 1e-2, "film.gas_reynolds": {"cells": [6, 16]}},
     "dry_gas_seal": {"run.turns": 0.01, "run.accuracy": 1e-2, "film.gas_reynolds.columns": 4},
