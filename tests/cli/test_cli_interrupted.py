@@ -93,9 +93,7 @@ def interrupted(tmp_path_factory):
     seen["show"] = sealdyn("show", partial_path(archive), cwd=folder)
     seen["show json"] = sealdyn("show", partial_path(archive), "--json", cwd=folder)
     seen["csv"] = sealdyn("show", partial_path(archive), "--csv", cwd=folder)
-    process.send_signal(signal.SIGINT)
-    process.send_signal(signal.SIGCONT)
-    seen["answer"] = finished(process)
+    seen["answer"], _ = ended_by(signal.SIGINT, process)
     return seen
 
 
@@ -158,9 +156,10 @@ STUDIES = {
 
 
 def ended_by(number, process) -> tuple:
-    """What a process leaves that is sent a signal, and after how long (s)."""
+    """What a process leaves that is sent a signal, held or not, and after how long (s)."""
     begun = time.monotonic()
     process.send_signal(number)
+    process.send_signal(signal.SIGCONT)
     return finished(process, timeout=6 * SOON), time.monotonic() - begun
 
 
@@ -201,8 +200,8 @@ def test_an_interrupted_study_goes_on(tmp_path):
     "words", [["check", REFERENCE], ["study", "contact-onset", REFERENCE, "--workers", 1]], ids=["check", "study"]
 )
 def test_what_has_finished_nothing_says_so(tmp_path, words, number):
-    process = started(*words, "--json", cwd=tmp_path)
-    until(lambda: hears(process), process)
+    process = itself(*words, "--json", cwd=tmp_path, first="os.kill(os.getpid(), signal.SIGSTOP)")
+    assert os.WIFSTOPPED(os.waitpid(process.pid, os.WUNTRACED)[1])
     answer, after = ended_by(number, process)
     assert answer.code == 130 and after < SOON and answer.found["status"] == "interrupted"
     assert answer.err.splitlines()[-1] == answer.found["message"] and "Traceback" not in answer.err
