@@ -151,8 +151,9 @@ RATES = 0.3
 
 
 class CoupledSegment(Segment):
-    """A Segment whose film has unknowns: it has a residual and its derivatives, and no right-hand side (SolverFailure);
-    `ring_rates` are those of the rings at given unknowns of the film."""
+    """A Segment whose film has unknowns: it has a residual and its derivatives; a right-hand side only where all of the
+    unknowns have rates (`has_rates`), which no run takes and comparisons do; `ring_rates` are those of the rings at
+    given unknowns of the film."""
 
     def _bind(self):
         """The equations are functions of this segment's own (coupled_native.py)."""
@@ -164,9 +165,21 @@ class CoupledSegment(Segment):
         """These equations for C (coupled_native.py), which work on this segment's arrays and those of its copies."""
         return coupled_native.native(self)
 
+    @cached_property
+    def has_rates(self) -> bool:
+        """Whether every unknown has a rate: the residual is then the rates less the right-hand side."""
+        return bool(np.all(self._stores)) and not np.any(self.lacks_inertia)
+
     def rhs(self, tau, y, yp):
-        """There is none: raises SolverFailure."""
-        raise SolverFailure("a film with unknowns of its own has no rates: only the residual form (IDA)")
+        """Rates at unknowns `y`.  Raises SolverFailure where some unknown has none."""
+        if not self.has_rates:
+            raise SolverFailure("a film with unknowns of its own has no rates: only the residual form (IDA)")
+        self.residual(tau, y, np.zeros(self.size), yp)
+        np.negative(yp, out=yp)
+
+    def rates_matrix(self, tau, y) -> csc_array:
+        """d y'/d y (size, size)."""
+        return -self._matrix(tau, y, np.zeros(self.size), 0.0, 1.0)
 
     def ring_rates(self, tau, y, yp):
         """Rates of rings and works at given unknowns of the film, into `yp` (size,)."""

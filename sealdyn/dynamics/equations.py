@@ -9,6 +9,7 @@ both rings (k = stator, rotor; W_k the spin of the carrier; sg = +1 stator, -1 r
 
 dK of a support with two tilt stiffnesses, whose axes, at `a`, turn with the carrier (phi_k); M_mass the moment of a
 centre of mass off the axis, of unbalance and weight, and of a load from outside (scene/loads.py), as F_load is.
+Offset faces: faces/geometry.py.
 **Valid** small tilts (1e-4 rad: exact to 1e-8); a changing speed drops -i J W' gamma.
 Contact of the faces adds to F_film and M_film; friction of a secondary seal (dynamics/secondary_seal.py, of one that
 gives dynamics/elastic_seal.py) acts on its ring, and a ring that sticks rigidly follows its carrier: gamma' = gamma_c'
@@ -40,12 +41,15 @@ from ..faces.geometry import (
     MEAN_SPIN,
     MOMENT_X,
     MOMENT_Y,
+    OFFSET_SIZE,
     OUTER_PRESSURE,
     ROTOR_ANGLE,
     SPIN_DIFFERENCE,
     STATOR_ANGLE,
     TEMPERATURE,
     VISCOSITY,
+    shift,
+    wide_ring,
 )
 from ..numerics.kernel import call_seal, inner_kernel, outer_kernel
 from .imposed_motion import (
@@ -89,12 +93,14 @@ UNEVEN_K, AXIS, SEAL_AT = 21, 22, 23
 RING = 24
 WORKS_AT = 2 * RING
 EXTENDED = WORKS_AT + 1
-LEG_AT = WORKS_AT + 2
+# Offset faces.
+OFFSET = WORKS_AT + 2
+LEG_AT = OFFSET + OFFSET_SIZE
 
 # Scratch `w`: imposed state of both rings, their own state, the net force and moments on each; then per ring the
 # friction of its secondary seal, its sliding speed, how far what it must hold lies outside what it can, and the
 # acceleration that follows the carrier; the cosine and sine of twice the angle of an uneven support, and those of the
-# carrier's own angle where a secondary seal gives.
+# carrier's own angle where a secondary seal gives; the centre of the narrower face (m).
 OWN_STATE = 2 * PER_RING
 NET = OWN_STATE + 2 * 6
 SEALS = NET + 2 * 3
@@ -102,7 +108,8 @@ SEAL_SPEED, SEAL_EXCESS, FOLLOWING = 3, 4, 5
 PER_SEAL = 8
 AXES = SEALS + 2 * PER_SEAL
 TURN = AXES + 2 * 2
-SCRATCH = TURN + 2 * 2
+CENTRE = TURN + 2 * 2
+SCRATCH = CENTRE + 2
 
 # The works, in the order of `y`; the last two only with contact or a secondary seal.
 WORKS = ("support_damper", "film", "closing", "carrier", "gyroscopic", "contact", "secondary_seal")
@@ -155,6 +162,9 @@ def kinematics(tau, y, yp, p, w, s):
         if p[k * RING + SEAL_AT] != 0.0:
             angle = s[STATOR_ANGLE] if k == 0 else s[ROTOR_ANGLE]
             w[TURN + 2 * k], w[TURN + 2 * k + 1] = math.cos(angle), math.sin(angle)
+    if p[OFFSET] != 0.0:
+        wide, spin = OWN_STATE + 6 * wide_ring(p[OFFSET:]), spin_s if wide_ring(p[OFFSET:]) == 1 else spin_r
+        shift(p[OFFSET:], w[wide : wide + 6], spin, w[CENTRE:], s)
 
 
 @inner_kernel()
@@ -193,17 +203,23 @@ def _net(tau, k, p, w, s, power):
     spring_x, spring_y = _tilt_springs(k, p, w)
     gyro_x, gyro_y = -p[ring + POLAR] * spin * v_y, p[ring + POLAR] * spin * v_x
 
+    film_x, film_y, contact_x, contact_y = s[MOMENT_X], s[MOMENT_Y], s[CONTACT_X], s[CONTACT_Y]
+    if p[OFFSET] != 0.0 and k == wide_ring(p[OFFSET:]):
+        # Forces act at the centre of the narrower face.
+        film_x, film_y = film_x + w[CENTRE + 1] * s[FORCE], film_y - w[CENTRE] * s[FORCE]
+        contact_x, contact_y = contact_x + w[CENTRE + 1] * s[CONTACT_FORCE], contact_y - w[CENTRE] * s[CONTACT_FORCE]
+
     w[net] = sign * (s[FORCE] + s[CONTACT_FORCE] - closing) + damper + spring + w[c + LOAD_Z]
-    w[net + 1] = sign * (s[MOMENT_X] + s[CONTACT_X]) + damper_x + spring_x + gyro_x + w[c + LOAD_X]
-    w[net + 2] = sign * (s[MOMENT_Y] + s[CONTACT_Y]) + damper_y + spring_y + gyro_y + w[c + LOAD_Y]
+    w[net + 1] = sign * (film_x + contact_x) + damper_x + spring_x + gyro_x + w[c + LOAD_X]
+    w[net + 2] = sign * (film_y + contact_y) + damper_y + spring_y + gyro_y + w[c + LOAD_Y]
 
     # An unknown that is not integrated (tilt of an axial scene, z of a tilt scene) has rate zero.
     power[0] += damper * v + damper_x * v_x + damper_y * v_y
-    power[1] += sign * (s[FORCE] * v + s[MOMENT_X] * v_x + s[MOMENT_Y] * v_y)
+    power[1] += sign * (s[FORCE] * v + film_x * v_x + film_y * v_y)
     power[2] -= sign * closing * v
     power[4] += gyro_x * v_x + gyro_y * v_y
     if len(power) > PLAIN:
-        power[5] += sign * (s[CONTACT_FORCE] * v + s[CONTACT_X] * v_x + s[CONTACT_Y] * v_y)
+        power[5] += sign * (s[CONTACT_FORCE] * v + contact_x * v_x + contact_y * v_y)
         if p[ring + SEAL_LINE] > 0.0:
             power[6] += call_seal(int(p[ring + SEAL_KERNEL]), k, spin, leg[spin_at + 1], p, w)
     return spring * v + spring_x * v_x + spring_y * v_y

@@ -4,12 +4,14 @@ That equilibrium is the aligned one, but where the faces press with a moment: th
 
 import numpy as np
 
+from ..faces import geometry
 from ..faces.film_thickness import h_min
-from ..faces.geometry import COLLAPSE, DZ, FORCE, GX, GY
+from ..faces.geometry import COLLAPSE, DZ, FORCE, GX, GY, wide_ring
 from ..scene.film import follows_speed
 from ..scene.patterns import grooves_of, waves_of
 from ..scene.rings import ROTOR, STATOR, stuck_support
 from ..scene.scene import SceneError
+from .equations import OFFSET
 from .equilibrium import axial_shift
 from .imposed_motion import AXIAL, FIXED_AXIS, FIXED_MOMENT, ON_RING, OWN, PULL, ROW, TURNING, UNBALANCE, rest_state
 from .intervals import constant_and_slope, modulo_turn
@@ -217,6 +219,28 @@ def harmonics(segment) -> list[Harmonic]:
         moves, own = kind in (AXIAL, TURNING, FIXED_AXIS), kind == OWN
         moment = shape if kind in ON_RING else None
         found.append(Harmonic(a1, int(ring), shape if moves else none, shape if own else none, moment))
+    return found + (_of_offset_faces(segment) if segment.p[OFFSET] else [])
+
+
+def _offset_at(block, interval, scene, coning_change: float) -> tuple[complex, float, float]:
+    """The narrower face's centre (m), x + i y, at an interval's start, the speed (rad/s) at which it turns, and the
+    rate of the tilt, per m of the centre, that a coned film feels (rad/(m s))."""
+    speeds = [constant_and_slope(quantity, interval)[0] for quantity in (scene.stator.speed, scene.shaft.speed)]
+    own, angle = (speeds[1], interval.rotor_angle) if block[geometry.OF_ROTOR] else (speeds[0], interval.stator_angle)
+    coned = (0.5 * sum(speeds) - own) * (block[geometry.CONED] + coning_change) / block[geometry.MEAN_RADIUS]
+    return block[geometry.OFFSET] * np.exp(1j * (block[geometry.DIRECTION] + modulo_turn(angle))), own, coned
+
+
+def _of_offset_faces(segment) -> list[Harmonic]:
+    """What the offset of a face does to the floating rings: the closing force on its arm to the wider one, and to both
+    the film of coned faces that slide."""
+    block, interval, model = segment.p[OFFSET:], segment.interval, segment.model
+    centre, pace, coned = _offset_at(block, interval, model.scene, model.coning_change(interval))
+    linear, none = model.linear_scene(interval), np.zeros(3, dtype=complex)
+    force, found = model.closing.over(interval, model.scene.film)[0], []
+    for k in linear.floating:
+        push = -linear.film_d[1, 1] * coned * centre - (1j * force * centre if k == wide_ring(block) else 0.0)
+        found.append(Harmonic(pace, k, none, none, linear.rings[k].sign * push * np.array([0.0, 1.0, -1j])))
     return found
 
 

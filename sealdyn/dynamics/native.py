@@ -13,7 +13,7 @@ from numba import boolean, carray, float64, int32, int64, types
 
 from ..faces.contact import contact_load, contact_load_and_friction, no_load
 from ..faces.film_thickness import h_min_of
-from ..faces.geometry import FORCE
+from ..faces.geometry import FORCE, pumped
 from ..numerics.kernel import (
     ADDRESS,
     MATRIX,
@@ -28,7 +28,7 @@ from ..numerics.kernel import (
     lazy_kernel,
     outer_kernel,
 )
-from .equations import kinematics, rates, residual
+from .equations import CENTRE, OFFSET, kinematics, rates, residual
 
 # --- Function values -----------------------------------------------------------------------------------
 
@@ -187,6 +187,8 @@ def states_along(flow, f, contact, block, seals, p, w, s, taus, ys, yps, thinnes
     for i in range(len(taus)):
         kinematics(taus[i], ys[i], yps[i], p, w, s)
         flow(f, s)
+        if p[OFFSET] != 0.0:
+            pumped(p[OFFSET:], w[CENTRE:], f, s)
         contact(block, f, s)
         if seals:
             rates(taus[i], ys[i], p, w, s, out)

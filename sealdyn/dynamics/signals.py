@@ -34,6 +34,7 @@ from ..faces.geometry import (
     STATOR_ANGLE,
     TORQUE,
     WEAR,
+    wide_ring,
 )
 from ..faces.waviness import wave_parts_along
 from ..quantities import everyday
@@ -267,8 +268,12 @@ def reactions(at: Samples) -> dict[str, np.ndarray]:
 def _of_film(at, k):
     """Force and moments on a ring that is rigid with its carrier."""
     sign, gap = 1.0 if k == 0 else -1.0, at.gap
-    force = gap[:, FORCE] + gap[:, CONTACT_FORCE] - at.closing_force
-    return sign * force, sign * (gap[:, MOMENT_X] + gap[:, CONTACT_X]), sign * (gap[:, MOMENT_Y] + gap[:, CONTACT_Y])
+    opening = gap[:, FORCE] + gap[:, CONTACT_FORCE]
+    moment_x, moment_y = gap[:, MOMENT_X] + gap[:, CONTACT_X], gap[:, MOMENT_Y] + gap[:, CONTACT_Y]
+    if k == wide_ring(at.segment.p[equations.OFFSET :]):
+        x, y = at.scratch[:, equations.CENTRE], at.scratch[:, equations.CENTRE + 1]
+        moment_x, moment_y = moment_x + y * opening, moment_y - x * opening
+    return sign * (opening - at.closing_force), sign * moment_x, sign * moment_y
 
 
 def _through_support(at, k):

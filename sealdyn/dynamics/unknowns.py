@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from ..faces.geometry import offset_block
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene.film import follows_speed
 from ..scene.loads import load_of, pulls
@@ -47,8 +48,8 @@ class Unknowns:
         self.coulomb_rings = [k for k in stick if k not in self.elastic_rings]
         self.extended = bool(scene.contact or self.seals)
         self.turning_supports = turning_supports(scene)
-        # Contact, friction and supports that change as they turn couple what a linear film keeps apart.
-        self.linear = linear = linear and not self.extended and not self.turning_supports
+        # Contact, friction, supports that change as they turn and offset faces couple what a linear film keeps apart.
+        self.linear = linear = linear and not (self.extended or self.turning_supports or scene.film.offset)
         rings = {STATOR: scene.stator, ROTOR: scene.rotor}
         self.floats = {k: ring.support is not None for k, ring in rings.items()}
         starts = {STATOR: scene.initial.stator, ROTOR: scene.initial.rotor}
@@ -125,6 +126,7 @@ class Unknowns:
     def _place(self, rings):
         """Places in `y`: displacements of both rings, their rates, the film, what only measures."""
         self.ring_block, self.names = np.zeros(equations.LEG_AT), []
+        self.ring_block[equations.OFFSET : equations.LEG_AT] = offset_block(self.scene.film)
         blocks = [self.ring_block[equations.RING * k : equations.RING * (k + 1)] for k in range(2)]
         place = 0
         for k, (ring, block) in enumerate(zip(rings, blocks, strict=True)):

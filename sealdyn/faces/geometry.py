@@ -10,8 +10,10 @@ where coning is the block's and its change, `depth` is what faces that are not p
 linear between the radii of a profile, 0 without one, and `waves` what turns with either ring (faces/waviness.py).
 Without waves and with `g = G exp(i alpha)` the thinnest place lies at theta = alpha - pi/2, and beta is counted from
 there: h = C + dz + coning (r - r_i) + depth(r) - r G cos(beta).  Here are the slots and the closed forms of such
-faces; h itself, its rate and its smallest value are in faces/film_thickness.py.
+faces and faces that lie apart; h itself, its rate and its smallest value are in faces/film_thickness.py.
 """
+
+import math
 
 import numpy as np
 
@@ -130,3 +132,77 @@ def regularised_thickness(h, floor):
     if h >= floor:
         return h
     return floor * floor / (2.0 * floor - h)
+
+
+# --- Offset faces --------------------------------------------------------------------------------------
+
+# Faces whose centres lie apart: the narrower face, and with it the film, off the shaft's axis by a small c.
+#
+# About the film's centre both faces turn at the mean spin wm and slide together at (wm - w) z x c, w the speed of the
+# ring with the narrower face:
+#
+#     div(h^3/(12 mu) grad p) = dh/dt + wm dh/dtheta + (wm - w) (z x c) . grad h
+#
+# On a tilted film the last term is the same everywhere, (wm - w) c . g: a squeeze of the whole film; on a coned one it
+# goes once around like a rate of the tilt.  The sliding itself carries liquid across the face, net
+#
+#     Q(r) = pi (wm - w) r^2 c . g     outwards,
+#
+# the pumping of an eccentric face that stands tilted.  The wider ring has its surface, and the film's force, at c.
+# **Source** derived here from Reynolds' equation between moving surfaces; Findlay (1969), J. Lubr. Tech. 91, as inward
+# pumping.
+# **Valid** |c| far below the width of the face, between plain cones; a liquid without cavities of its own unknowns;
+# linearised numbers (modes, steady response, margins) have its moments, and err by the offset over the radius.
+
+# Slots in the parameter block: offset (m; 0: none), its direction (rad), whether it is the rotor's, coning at the start
+# (rad), mean radius (m).
+OFFSET, DIRECTION, OF_ROTOR, CONED, MEAN_RADIUS = range(5)
+OFFSET_SIZE = 5
+
+
+def offset_block(film) -> np.ndarray:
+    """The slots (OFFSET_SIZE,) of a `Film` table."""
+    mean = 0.5 * (film.inner_radius + film.outer_radius)
+    turns = float(film.narrow_face == "rotor")
+    return np.array([film.offset, film.offset_direction, turns, initially(film.coning), mean])
+
+
+@inner_kernel()
+def wide_ring(block):
+    """The ring with the wider face (0 stator, 1 rotor)."""
+    return 0 if block[OF_ROTOR] != 0.0 else 1
+
+
+@inner_kernel()
+def slip(block, s):
+    """How much faster (rad/s) the faces turn, on average, than the narrower one."""
+    return 0.5 * s[SPIN_DIFFERENCE] if block[OF_ROTOR] == 0.0 else -0.5 * s[SPIN_DIFFERENCE]
+
+
+@inner_kernel()
+def shift(block, wide, spin, centre, s):
+    """The narrower face's `centre` (2,) (m), and the gap state `s` there, from displacements and rates `wide` (6,) of
+    the wider ring, (z, tilts, rates), and the `spin` (rad/s) of the narrower."""
+    turned = block[DIRECTION] + (s[STATOR_ANGLE] if block[OF_ROTOR] == 0.0 else s[ROTOR_ANGLE])
+    x, y = block[OFFSET] * math.cos(turned), block[OFFSET] * math.sin(turned)
+    centre[0], centre[1] = x, y
+    # The stator's height less the rotor's.
+    sign = 1.0 if block[OF_ROTOR] != 0.0 else -1.0
+    s[DZ] += sign * (wide[1] * y - wide[2] * x)
+    s[DZ_RATE] += sign * (wide[4] * y - wide[5] * x)
+    s[DZ_RATE] += sign * spin * (wide[1] * x + wide[2] * y)
+    pace = slip(block, s)
+    s[DZ_RATE] += pace * (x * s[GX] + y * s[GY])
+    coned = pace * (block[CONED] + s[CONING_CHANGE]) / block[MEAN_RADIUS]
+    s[GX_RATE] += coned * x
+    s[GY_RATE] += coned * y
+
+
+@inner_kernel()
+def pumped(block, centre, f, s):
+    """Adds to the flows (m^3/s) of a gap state what the sliding carries across the face block `f`."""
+    across = math.pi * slip(block, s) * (centre[0] * s[GX] + centre[1] * s[GY])
+    r_i, r_o = f[INNER_RADIUS], f[OUTER_RADIUS]
+    mean = f[TILT_AT_MEAN] != 0.0
+    s[FLOW_INNER] += across * r_i * (block[MEAN_RADIUS] if mean else r_i)
+    s[FLOW_OUTER] += across * r_o * (block[MEAN_RADIUS] if mean else r_o)

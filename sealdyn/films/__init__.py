@@ -132,6 +132,9 @@ def film_of(scene, film: Film | None = None) -> Film:
         raise SceneError(f"film.{key}", found, expected)
     for error in waviness_errors(scene):
         raise SceneError(*error)
+    if table.offset and (film.unknowns or table.gas is not None or table.profile or waves or grooves_of(scene)[1]):
+        expected = "0, or a liquid between plain cones by a film without cells: linear, radial"
+        raise SceneError("film.offset", f'{table.offset:g} m with film.model = "{film.name}" or such faces', expected)
     if table.pads and any(points(scene.stator.speed)):
         raise SceneError("stator.speed", "a face with pads that turns", "0: pads are in the face that stands still")
     turning = turning_waves(scene) if film.standing_waves else ""

@@ -100,6 +100,9 @@ def _film(scene) -> None:
                 f"{slope:g} rad, a film of {outer:g} m at the outer radius",
                 "an open film",
             )
+    width = film.outer_radius - film.inner_radius
+    if not 0.0 <= film.offset < width:
+        raise SceneError("film.offset", f"{film.offset:g} m", f"at least 0 and less than the face is wide, {width:g} m")
     if film.model == "reynolds":
         for key, found, expected in reynolds_errors(film):
             raise SceneError(f"film.{key}", found, expected)

@@ -312,6 +312,13 @@ class Film(Strict):
     """Of model = "linear": Green's narrow-seal ones, those of the radial film, or the numbers of a table."""
     floor: float = 1e-3
     """Share of the clearance below which the film counts as collapsed; with [contact] the asperities decide."""
+    narrow_face: Literal["stator", "rotor"] = "stator"
+    """Ring whose narrower face has these radii; counts with an `offset`."""
+    offset: Length = 0.0
+    """Of the narrower face's centre from the shaft's axis: the other face pumps across it, and is pressed off its
+    centre."""
+    offset_direction: Angle = 0.0
+    """Of the offset, from the x axis; it turns with its ring."""
     profile: Profile | None = None
     """Faces that are no plain cones."""
     pads: list[Pads] = field(default_factory=list)

@@ -303,6 +303,8 @@ def tilt_is_imposed(scene) -> bool:
     rotor, stator = scene.rotor, scene.stator
     tilts = [rotor.misalignment if rotor.support else rotor.runout, stator.misalignment]
     tilts += [whirl.angle for whirl in scene.shaft.whirl]
+    # The film's force on an arm.
+    tilts += [scene.film.offset]
     for ring, speed in ((rotor, scene.shaft.speed), (stator, stator.speed)):
         if ring.support and ring.mass_centre and ring.mass_centre.axial:
             tilts += [scene.housing.gravity] + ([speed] if ring.mass_centre.eccentricity else [])

@@ -11,7 +11,7 @@ import warnings
 import numpy as np
 
 from .contract import FEW, SolverFailure, failure_message
-from .methods import METHODS, cvode, scipy_steps
+from .methods import METHODS, cvode, ida, scipy_steps
 
 # Spectral radius of generalised-alpha at infinite frequency: how much it damps what the step does not resolve.
 RHO = 0.8
@@ -27,13 +27,19 @@ def _bdf_of_order_two(segment, tau, y, method, tolerance, counts):
     yield from cvode(segment, tau, y, method, tolerance, counts, max_order=2)
 
 
+def _low_order(segment, tau, y, method, tolerance, counts):
+    """IDA held at order one, the implicit Euler rule with an error estimate, or at order two."""
+    yield from ida(segment, tau, y, method, tolerance, counts, max_order=1 if method == "ida1" else 2)
+
+
 def _scipy(segment, tau, y, method, tolerance, counts):
-    """SciPy's RK45 (Dormand & Prince, 1980) and LSODA (Petzold, 1983), step by step."""
-    from scipy.integrate import LSODA, RK45
+    """SciPy's RK45 (Dormand & Prince, 1980), LSODA (Petzold, 1983) and BDF (Shampine & Reichelt, 1997), step by
+    step."""
+    from scipy.integrate import BDF, LSODA, RK45
 
     _refuse_residual_form(segment, method)
-    kind = RK45 if method == "rk45" else LSODA
-    steps = scipy_steps(kind, kind is LSODA, segment, tau, y, method, tolerance, counts)
+    kind = {"rk45": RK45, "lsoda": LSODA, "scipy_bdf": BDF}[method]
+    steps = scipy_steps(kind, kind is not RK45, segment, tau, y, method, tolerance, counts)
     while True:
         # LSODA warns before it gives up.
         with warnings.catch_warnings():
@@ -225,7 +231,7 @@ class _System:
 
 
 def _refuse_residual_form(segment, method):
-    if segment.has_residual_form:
+    if segment.has_residual_form and not (np.all(segment.rate_places >= 0) and segment.has_rates):
         what = "a massless ring has none" if np.any(segment.lacks_inertia) else "this film's unknowns have none"
         raise SolverFailure(f"{method} needs rates, and {what}: only the residual form (IDA)")
 
@@ -243,5 +249,6 @@ def _only_with_rates(steps):
 CHOSEN = {
     name: steps if name in ("ida", "trbdf2") else _only_with_rates(steps) for name, steps in METHODS.items()
 }  # fmt: skip
-REFERENCE_METHODS = {**CHOSEN, "bdf2": _bdf_of_order_two, "rk45": _scipy, "lsoda": _scipy, "newmark": _newmark,
+REFERENCE_METHODS = {**CHOSEN, "bdf2": _bdf_of_order_two, "rk45": _scipy, "lsoda": _scipy, "scipy_bdf": _scipy,
+          "ida1": _low_order, "ida2": _low_order, "newmark": _newmark,
           "generalised_alpha": _generalised_alpha, "midpoint": _midpoint}  # fmt: skip

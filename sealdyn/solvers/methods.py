@@ -23,7 +23,7 @@ def dop853_or_radau(segment, tau, y, method, tolerance, counts):
 def scipy_steps(kind, implicit, segment, tau, y, method, tolerance, counts):
     """Steps of one of SciPy's solvers (the class `kind`), other arguments as contract.py; an `implicit` one is given
     the segment's Jacobian.  **Raises** SolverFailure."""
-    inner = segment.rhs
+    inner, stores = segment.rhs, segment.film.stop > segment.film.start
 
     def counted(t, y):
         counts.rhs += 1
@@ -33,9 +33,11 @@ def scipy_steps(kind, implicit, segment, tau, y, method, tolerance, counts):
 
     def differences(t, y):
         # SciPy's own steps of the tolerance times 1e-8 drown beside a clearance.
-        matrix = np.empty((segment.size, segment.size))
         counts.jacobians += 1
         counts.rhs += segment.n_mechanical
+        if stores:
+            return segment.rates_matrix(t, np.array(y))
+        matrix = np.empty((segment.size, segment.size))
         segment.jacobian(t, np.array(y), None, matrix)
         return matrix
 
@@ -56,7 +58,8 @@ def scipy_steps(kind, implicit, segment, tau, y, method, tolerance, counts):
             raise SolverFailure(failure_message(method, str(error), solver.t)) from None
         if solver.status == "failed":
             raise SolverFailure(failure_message(method, message, solver.t))
-        yield np.array([solver.t]), solver.y[None, :].copy(), None
+        # Rates of a film are not known from its unknowns alone.
+        yield np.array([solver.t]), solver.y[None, :].copy(), counted(solver.t, solver.y)[None, :] if stores else None
 
 
 # Set to "python": scikit-sundae for everything.
@@ -70,10 +73,10 @@ def cvode(segment, tau, y, method, tolerance, counts, max_order: int | None = No
     yield from _back_end(segment, counts, "rates").cvode(segment, tau, y, method, tolerance, counts, max_order)
 
 
-def ida(segment, tau, y, method, tolerance, counts):
+def ida(segment, tau, y, method, tolerance, counts, max_order: int | None = None):
     """Steps of IDA, on the residual form, with the contract of contract.py; `y` is made consistent first.
     **Raises** SolverFailure."""
-    yield from _back_end(segment, counts, "residual").ida(segment, tau, y, method, tolerance, counts)
+    yield from _back_end(segment, counts, "residual").ida(segment, tau, y, method, tolerance, counts, max_order)
 
 
 def why_slow(sparse: bool = False) -> str:

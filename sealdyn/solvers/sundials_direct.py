@@ -284,7 +284,7 @@ def _step_ida(memory, vector, slopes, y, yp, reached, end, orders, ts, ys, yps):
     return len(ts), int32(0)
 
 
-def ida(segment, tau, y, method, tolerance, counts):
+def ida(segment, tau, y, method, tolerance, counts, max_order: int | None = None):
     """Steps of IDA, on the residual form, with the contract of contract.py; `y` is made consistent first.
     **Raises** SolverFailure."""
     carried, reached = Carried(segment, segment.native.residual), np.array([tau])
@@ -305,6 +305,8 @@ def ida(segment, tau, y, method, tolerance, counts):
             differential = np.ones(segment.size)
             differential[segment.algebraic] = 0.0
             lib.IDASetId(memory, made.vector(differential))
+        if max_order:
+            lib.IDASetMaxOrd(memory, max_order)
         lib.IDASetMaxNumSteps(memory, ctypes.c_long(MOST_STEPS))
         lib.IDASetMaxStep(memory, ctypes.c_double(longest_step(segment)))
         lib.IDASetStopTime(memory, ctypes.c_double(segment.length))

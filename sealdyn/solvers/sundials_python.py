@@ -118,7 +118,7 @@ def cvode(segment, tau, y, method, tolerance, counts, max_order: int | None = No
     yield from _in_chunks(solver, segment, tau, y, None, method, counts, allow)
 
 
-def ida(segment, tau, y, method, tolerance, counts):
+def ida(segment, tau, y, method, tolerance, counts, max_order: int | None = None):
     """Steps of IDA, on the residual form, with the contract of contract.py; `y` is made consistent first.
     **Raises** SolverFailure."""
     from sksundae.ida import IDA
@@ -131,6 +131,7 @@ def ida(segment, tau, y, method, tolerance, counts):
         inner(t, y, yp, res)
 
     options = {"algebraic_idx": segment.algebraic} if len(segment.algebraic) else {}
+    options |= {"max_order": max_order} if max_order else {}
     if segment.film.stop > segment.film.start:
         options |= _film_options(segment, counts)
     y, yp = segment.start(tau, y)

@@ -230,12 +230,45 @@ accuracy = 1e-2
 """
 
 
+def test_a_film_that_stores_is_judged_by_a_library_on_its_rates(tmp_path):
+    """Whose order of accuracy is that of its method: implicit Euler's errors fall as the root of the tolerance."""
+    few = ("run.turns=0.5", "film.gas_reynolds.cells=[6, 12]", "run.start=rest")
+    methods = ["ida", "radau", "scipy_bdf", "ida1", "dop853", "adams"]
+    answer = studied(tmp_path, "gas_reynolds_reference", *few, models=False, methods=methods, loosest=1e-4)
+    assert answer["judges"]["second"].startswith("SciPy Radau") and answer["judge_error"]["over_time"] < 1e-7
+    assert set(answer["methods"]) == set(methods) - {"adams"}
+    for name, worst in (("ida", 1e-5), ("radau", 1e-5), ("scipy_bdf", 1e-5), ("ida1", 1e-3)):
+        assert answer["methods"][name]["error"]["over_time"][-1] < worst, name
+    of_euler = answer["methods"]["ida1"]["error"]["over_time"]
+    assert 5.0 < of_euler[0] / of_euler[-1] < 500.0
+
+
+def test_the_rates_of_a_film_that_stores():
+    """Those with which its residual is zero, and their derivatives as differences have them."""
+    segment = study.ready(scenario("gas_reynolds_reference", "film.gas_reynolds.cells=[4, 8]")).segment(0)
+    y, yp = segment.start(0.0, segment.model.vector([2e-7, 1e-5, -2e-5], [1e-4, 1e-3, 2e-3]))
+    found, res = np.empty(segment.size), np.empty(segment.size)
+    segment.rhs(0.0, y, found)
+    segment.residual(0.0, y, found, res)
+    np.testing.assert_allclose(res, 0.0, atol=1e-12 * np.abs(found).max())
+    np.testing.assert_allclose(found, yp, rtol=1e-8, atol=1e-9 * np.abs(yp).max())
+    matrix, step = segment.rates_matrix(0.0, y).toarray(), 1e-6 * segment.scales
+    for j in range(0, segment.film.stop, 7):
+        there = [np.empty(segment.size), np.empty(segment.size)]
+        for side, out in zip((1.0, -1.0), there, strict=True):
+            moved = y.copy()
+            moved[j] += side * step[j]
+            segment.rhs(0.0, moved, out)
+        column = (there[0] - there[1]) / (2.0 * step[j])
+        np.testing.assert_allclose(matrix[:, j], column, atol=1e-4 * np.abs(column).max())
+
+
 def test_a_film_with_cavities_is_judged_by_its_method_and_by_more_cells(tmp_path):
     seal = parse_scenario(CAVITIES, "seal")
     flags = {"tolerances": 4, "loosest": 1e-2, "tightest": 1e-5}
     answer = run_study("work-precision", seal, tmp_path / "w.h5", flags={**FEW, **flags})
     # The library does not pass where cells tear; what needs rates is not even tried.
-    assert list(answer["methods"]) == ["ida", "trbdf2"]
+    assert list(answer["methods"]) == ["ida", "trbdf2", "ida2", "ida1"]
     assert "ok" not in answer["methods"]["ida"]["status"]
     row = answer["methods"]["trbdf2"]
     # At the judge's own tolerance, 1e-5, it would be found without an error.

@@ -22,7 +22,6 @@ from ...simulation.result import libraries
 from ...simulation.selection import check_method, choose_method, prepare_run
 from ...solvers.collocation import collocation
 from ...solvers.fixed_step import REFERENCE_METHODS
-from ...solvers.methods import METHODS
 from ...status import Status
 from .. import Info
 from . import film_ladder
@@ -33,7 +32,7 @@ NAMES = {
     "rk45": "SciPy RK45", "lsoda": "SciPy LSODA", "radau": "SciPy Radau", "newmark": "Newmark",
     "generalised_alpha": "generalised-alpha", "midpoint": "implicit midpoint", "expm": "matrix exponential",
     "gauss": "Gauss collocation of order 12", "radau_nodes": "Radau collocation of order 9",
-    "trbdf2": "TR-BDF2",
+    "trbdf2": "TR-BDF2", "scipy_bdf": "SciPy BDF", "ida1": "IDA order 1 (implicit Euler)", "ida2": "IDA order 2",
 }  # fmt: skip
 INFO = Info(
     timed=("fmr_reference", 33),
@@ -47,12 +46,18 @@ INFO = Info(
 )  # fmt: skip
 FAST = ("adams", "bdf", "ida", "dop853", "lsoda", "expm", "trbdf2")
 SLOW = ("rk45", "radau", "bdf2", "newmark", "generalised_alpha", "midpoint")
-Method = Literal[*FAST, *SLOW]
+# Of films with unknowns beside IDA: it at low orders, and SciPy on the rates where every unknown has one.
+OF_FILMS = ("scipy_bdf", "ida2", "ida1")
+ON_RATES = ("scipy_bdf", "radau", "dop853", "rk45")
+LATER = (*SLOW, *OF_FILMS)
+Method = Literal[*FAST, *LATER]
 # Far below every judged run; the embedded estimate of the judge is of lower order than the judge itself.
 TIGHT, JUDGE = 1e-11, 1e-11
 ASKED = (1e-3, 1e-6, 1e-9)
 # Judges of films with unknowns of their own: tolerances over the accuracy, until two have ended.
 SHARP = (1e-3, 8e-3, 6.4e-2)
+# The first of them where every unknown has a rate, so that high orders pay.
+SHARPEST = 1e-6
 # A method is not judged by itself at tolerances nearer than this to the judge's own.
 CLOSEST = 3.0
 # A time below this is measured again.
@@ -93,8 +98,8 @@ def run(scenario, settings, tools) -> Answer:
     if scenario.run.start == "auto":
         # All methods and films begin alike.
         scenario = with_values(scenario, {"run.start": run.start.taken})
-    chosen = [m for m in (*FAST, *SLOW) if not settings.methods or m in settings.methods]
-    chosen = [m for m in chosen if _can(run.model, m)]
+    chosen = [m for m in (*FAST, *LATER) if not settings.methods or m in settings.methods]
+    chosen = [m for m in chosen if _can(run, m)]
     exact, band, judges = reference(scenario, settings.samples, settings.judging)
     tools.say(0.1)
     sharpest = judges.get("least", 0.0)
@@ -107,10 +112,10 @@ def run(scenario, settings, tools) -> Answer:
     rows = alone.map(judged, first, "methods")
     tools.say(0.4)
     shared |= {"front": front(rows, settings.where), "slowest": settings.slowest, "where": settings.where}
-    later = [{**shared, "method": m, "limit": settings.longest} for m in chosen if m in SLOW]
+    later = [{**shared, "method": m, "limit": settings.longest} for m in chosen if m in LATER]
     rows += alone.map(judged, later, "methods")
     tools.say(0.8)
-    methods = dict(zip([m for g in (FAST, SLOW) for m in chosen if m in g], rows, strict=True))
+    methods = dict(zip([m for g in (FAST, LATER) for m in chosen if m in g], rows, strict=True))
     methods = {name: row for name, row in methods.items() if "failed" not in row}
     mark_slow_runs(methods, settings.where, settings.slowest)
     rungs, unjudged = [], None
@@ -132,12 +137,16 @@ def run(scenario, settings, tools) -> Answer:
     return Answer(answer, _found(answer), _tables(answer), notes=_notes(answer, settings))
 
 
-def _can(model, method: str) -> bool:
-    """Whether a method is one for this model; a massless ring shows what becomes of the others."""
-    own = model.unknowns.film_unknowns is not None
-    if method in ("expm", "trbdf2") or own:
+def _can(run, method: str) -> bool:
+    """Whether a method is one for this run; a massless ring shows what becomes of the others."""
+    own = run.model.unknowns.film_unknowns is not None
+    if method in OF_FILMS and not own:
+        return False
+    if own and method in ON_RATES:
+        return run.segment(0).has_rates
+    if method in ("expm", "trbdf2") or (own and method not in OF_FILMS):
         try:
-            check_method(model, method)
+            check_method(run.model, method)
         except SceneError:
             return False
     return True
@@ -165,8 +174,8 @@ def reference(scenario, samples: int, limit: float):
     or None), and the names of both.
 
     Judges in order: collocation at Gauss or at Radau nodes, whichever suits the scene, then the matrix exponential or
-    DOP853 at 1e-13 where they can, then the other nodes.  Of a film with unknowns of its own its method twice, far
-    sharper than asked."""
+    DOP853 at 1e-13 where they can, then the other nodes.  Of a film with unknowns of its own its method far sharper
+    than asked, then SciPy's Radau where every unknown has a rate, or the same again."""
     run = ready(scenario)
     if run.model.unknowns.film_unknowns:
         return _by_itself(scenario, choose_method(run)[0], samples, limit)
@@ -202,12 +211,14 @@ def reference(scenario, samples: int, limit: float):
 
 def _by_itself(scenario, method: str, samples: int, limit: float):
     """As `reference`, by a method at tolerances far below the scenario's accuracy."""
-    good = []
-    for share in SHARP:
+    good, trials = [], [(method, share) for share in SHARP]
+    if _can(ready(scenario), "radau"):
+        trials = [(method, SHARPEST), ("radau", SHARPEST), trials[0], ("radau", SHARP[0]), *trials[1:]]
+    for name, share in trials:
         tolerance = max(share * scenario.run.accuracy, TIGHT)
-        found = observe(ready(scenario), METHODS[method], method, tolerance, limit, samples)
+        found = observe(ready(scenario), REFERENCE_METHODS[name], name, tolerance, limit, samples)
         if found.status in (Status.OK, Status.COLLAPSED):
-            good.append((f"{NAMES[method]} at {tolerance:.0e}", found, tolerance))
+            good.append((f"{NAMES[name]} at {tolerance:.0e}", found, tolerance))
         if len(good) == 2:
             break
     if not good:
