@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import os
 import random
 import signal
 import subprocess
@@ -11,13 +12,38 @@ import time
 from pathlib import Path
 
 import pytest
-from command import REFERENCE, SCENARIOS, Answer, finished, sealdyn, settings, started, until
+from command import REFERENCE, SCENARIOS, finished, sealdyn, settings, started, until
 from killed import mark_first
 
 from sealdyn.archive import ArchiveError, column, field, partial_path, read_info
 
-# Both rings' forcing, no sample beyond need: seconds of solving.
-LONG = settings({"run.turns": 2000, "run.samples_per_turn": 8})
+# Both rings' forcing, no sample beyond need; several blocks of steps.
+TURNS, PER_TURN = 600, 8
+LONG = settings({"run.turns": TURNS, "run.samples_per_turn": PER_TURN})
+# The program, which does something to itself at a point of its progress, told `done` of `end` (s): no machine is too
+# fast or too slow for that.  What has been computed is written at once.
+ITSELF = """
+import os, signal, sys
+from sealdyn import cli
+from sealdyn.archive import ArchiveWriter
+
+ArchiveWriter.__init__.__kwdefaults__["interval"] = 0.0
+once = []
+
+class Told(cli.Progress):
+    def __enter__(self):
+        {first}
+        return super().__enter__()
+
+    def __call__(self, done, end, words=None):
+        super().__call__(done, end, words)
+        if {when} and not once:
+            once.append({then})
+
+cli.Progress = Told
+sys.argv[0] = "sealdyn"
+cli.main()
+"""
 SCALES = {"rotor_z": 1e-5, "rotor_tilt_x": 1e-5 / 0.04, "rotor_tilt_y": 1e-5 / 0.04, "h_min": 1e-5, "time": 1.0}
 PRESSURE = 5e5
 
@@ -28,6 +54,12 @@ def rows(path) -> int:
         return read_info(path)["rows"]
     except ArchiveError:
         return 0
+
+
+def itself(*words, cwd, when="False", then="None", first="pass"):
+    """The program as a process of its own that does `first` as its progress begins, and `then` once when `when`."""
+    line = [sys.executable, "-c", ITSELF.format(when=when, then=then, first=first), *map(str, words)]
+    return subprocess.Popen(line, cwd=cwd, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
 def agree(path, other, accuracy=1e-6):
@@ -54,16 +86,14 @@ def interrupted(tmp_path_factory):
     archive = folder / "outputs" / "fmr_reference.h5"
     assert sealdyn("run", REFERENCE, *settings({"run.turns": 2}), "--no-plot", cwd=folder).code == 0
     seen = {"complete": archive.read_bytes(), "folder": folder, "archive": archive}
-    process = started("run", REFERENCE, *LONG, "--json", cwd=folder)
-    until(lambda: rows(partial_path(archive)) > 300, process)
-    # Held while it is looked at: a fast machine would be done before.
-    process.send_signal(signal.SIGSTOP)
+    held = dict(when="done > 0.2 * end", then="os.kill(os.getpid(), signal.SIGSTOP)")
+    process = itself("run", REFERENCE, *LONG, "--json", cwd=folder, **held)
+    # It holds itself while it is looked at.
+    assert os.WIFSTOPPED(os.waitpid(process.pid, os.WUNTRACED)[1])
     seen["show"] = sealdyn("show", partial_path(archive), cwd=folder)
     seen["show json"] = sealdyn("show", partial_path(archive), "--json", cwd=folder)
     seen["csv"] = sealdyn("show", partial_path(archive), "--csv", cwd=folder)
-    process.send_signal(signal.SIGINT)
-    process.send_signal(signal.SIGCONT)
-    seen["answer"] = finished(process)
+    seen["answer"], _ = ended_by(signal.SIGINT, process)
     return seen
 
 
@@ -86,7 +116,7 @@ def test_interrupt_ends_cleanly(interrupted):
     assert "--continue" in answer.err and "Traceback" not in answer.err
     info = read_info(interrupted["folder"] / answer.found["archive"])
     assert info["status"] == "interrupted"
-    assert 300 < info["rows"] < 16001
+    assert 300 < info["rows"] < TURNS * PER_TURN
     assert info["summary"]["end"]["time"] < info["summary"]["end"]["asked"]
 
 
@@ -126,9 +156,10 @@ STUDIES = {
 
 
 def ended_by(number, process) -> tuple:
-    """What a process leaves that is sent a signal, and after how long (s)."""
+    """What a process leaves that is sent a signal, held or not, and after how long (s)."""
     begun = time.monotonic()
     process.send_signal(number)
+    process.send_signal(signal.SIGCONT)
     return finished(process, timeout=6 * SOON), time.monotonic() - begun
 
 
@@ -169,8 +200,8 @@ def test_an_interrupted_study_goes_on(tmp_path):
     "words", [["check", REFERENCE], ["study", "contact-onset", REFERENCE, "--workers", 1]], ids=["check", "study"]
 )
 def test_what_has_finished_nothing_says_so(tmp_path, words, number):
-    process = started(*words, "--json", cwd=tmp_path)
-    until(lambda: hears(process), process)
+    process = itself(*words, "--json", cwd=tmp_path, first="os.kill(os.getpid(), signal.SIGSTOP)")
+    assert os.WIFSTOPPED(os.waitpid(process.pid, os.WUNTRACED)[1])
     answer, after = ended_by(number, process)
     assert answer.code == 130 and after < SOON and answer.found["status"] == "interrupted"
     assert answer.err.splitlines()[-1] == answer.found["message"] and "Traceback" not in answer.err
@@ -259,23 +290,9 @@ def hears(process) -> bool:
 
 def test_a_run_is_interrupted_while_it_is_done_once_more(tmp_path):
     """In the run that its certificate rests on, which the progress tells."""
-    asked = """
-import os, signal, sys
-from sealdyn import cli
-
-class Late(cli.Progress):
-    def __call__(self, done, end, words=None):
-        super().__call__(done, end, words)
-        if self.runs == 2 and done > 0:
-            os.kill(os.getpid(), signal.SIGTERM)
-
-cli.Progress = Late
-sys.argv = ["sealdyn", "run", *sys.argv[1:], "--no-plot", "--json"]
-cli.main()
-"""
-    words = [sys.executable, "-c", asked, str(SCENARIOS / "massless_ring.toml"), *settings({"run.turns": 200})]
-    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, timeout=60)
-    answer = Answer(done.returncode, done.stdout, done.stderr)
+    late = dict(when="self.runs == 2 and done > 0", then="os.kill(os.getpid(), signal.SIGTERM)")
+    words = ["run", SCENARIOS / "massless_ring.toml", *settings({"run.turns": 200}), "--no-plot", "--json"]
+    answer = finished(itself(*words, cwd=tmp_path, **late))
     assert answer.code == 130 and answer.found["status"] == "interrupted"
     assert answer.found["certificate"]["met"] is None and answer.found["archive"] in answer.err
     assert rows(tmp_path / answer.found["archive"]) > 200
@@ -283,19 +300,20 @@ cli.main()
 
 @pytest.mark.slow
 def test_killed_at_random_instants(tmp_path, unbroken):
-    """One run killed three times, each time continued; the archive is readable after every kill.  More kills, of ten
-    scenes: tests/benchmark/attack/continues.py."""
+    """One run killed three times, each time continued; the archive is readable after every kill.  It is killed by a
+    clock of its own, which nothing handles, soon after a point of its progress.  More kills, of ten scenes:
+    tests/benchmark/attack/continues.py."""
     archive, chance = tmp_path / "outputs" / "fmr_reference.h5", random.Random(1989)
     reached = [0]
     for kill in range(3):
-        process = started("run", REFERENCE, *LONG, "--no-plot", *["--continue"] * (reached[-1] > 0), cwd=tmp_path)
+        alarm = f"signal.setitimer(signal.ITIMER_VIRTUAL, {chance.uniform(0.001, 0.03)})"
         # One of them while the program takes over, the others while it writes.
-        if kill != 1:
-            until(lambda: rows(partial_path(archive)) > reached[-1], process)
-        time.sleep(chance.uniform(0.0, 1.0 if kill == 1 else 0.1))
-        assert process.poll() is None, f"done before kill {kill}: {process.communicate()}"
-        process.kill()
-        process.communicate()
+        where = {"first": alarm} if kill == 1 else {"when": f"done > {0.2 + 0.1 * kill} * end", "then": alarm}
+        process = itself(
+            "run", REFERENCE, *LONG, "--no-plot", *["--continue"] * (reached[-1] > 0), cwd=tmp_path, **where
+        )
+        said = process.communicate(timeout=120)
+        assert process.returncode == -signal.SIGVTALRM, said
         assert not archive.exists()
         if partial_path(archive).exists():
             shown = sealdyn("show", partial_path(archive), "--json", cwd=tmp_path).found

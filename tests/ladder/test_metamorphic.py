@@ -45,17 +45,22 @@ def drawn(family, seed):
     random = np.random.default_rng(seed)
     while not (made := FAMILIES[family](random)).smooth:
         pass
-    scene = made.scene
-    speed = scene.shaft.speed.value[0] if isinstance(scene.shaft.speed, PiecewiseLinear) else scene.shaft.speed
-    return scene, min(made.duration, math.pi / abs(speed))
+    return made.scene, shortened(made)
+
+
+def shortened(made):
+    """Duration (s) of a drawn scene, half a turn at most."""
+    speed = made.scene.shaft.speed
+    speed = speed.value[0] if isinstance(speed, PiecewiseLinear) else speed
+    return min(made.duration, math.pi / abs(speed))
 
 
 def floating_stator(family):
-    """A scene of a family in which only the stator floats, and its duration (s)."""
+    """A scene of a family in which only the stator floats, and its duration (s), half a turn at most."""
     random = np.random.default_rng(3)
     while "fms" not in (made := FAMILIES[family](random)).words:
         pass
-    return made.scene, made.duration
+    return made.scene, shortened(made)
 
 
 def wavy():

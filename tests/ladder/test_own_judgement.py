@@ -17,8 +17,8 @@ def errors(kind, number, seed=SEED):
 @pytest.mark.parametrize(
     ("kind", "number"),
     [
-        pytest.param("rub", 18, marks=pytest.mark.core),
-        pytest.param("gas_rub", 1, marks=pytest.mark.slow),
+        pytest.param("rub", 15, marks=pytest.mark.core),
+        pytest.param("gas_rub", 5, marks=pytest.mark.slow),
         ("gas_pads", 3),
         ("liquid_waves", 2),
         pytest.param("gas_continued", 4, marks=pytest.mark.core),

@@ -4,6 +4,7 @@ import json
 import os
 import time
 from multiprocessing import active_children
+from types import SimpleNamespace
 
 import pytest
 from threadpoolctl import threadpool_info
@@ -117,10 +118,14 @@ def test_no_journal_before_the_first_point(tmp_path):
 # --- points that cost less together ---------------------------------------------------------------------
 
 
+# Seconds that points took, in each process: on a busy machine those of a clock are more.
+SPENT = [0.0]
+
+
 def squares(points):
     with open(os.environ[CALLS], "a") as file:
         file.write(f"{len(points)}\n")
-    time.sleep(0.01 * len(points))
+    SPENT[0] += 0.01 * len(points)
     if len(points) > 1 and any(point["x"] == 40 for point in points):
         raise RuntimeError("spoilt for all")
     return [ValueError("not for squaring") if point["x"] == 2 else {"y": point["x"] ** 2} for point in points]
@@ -130,6 +135,7 @@ def squares(points):
 def test_points_that_cost_less_together(calls, tmp_path, monkeypatch, workers):
     """In pieces that take about as long as they may, the last ones small; one that fails fails alone."""
     monkeypatch.setattr(parallel, "PIECE", 0.08)
+    monkeypatch.setattr(parallel, "time", SimpleNamespace(perf_counter=lambda: SPENT[0]))
     told = []
     rows = evaluate(Together(squares), points(60), Checkpoint(tmp_path / "j", "a"), processes(workers),
                     lambda n, m: told.append((n, m)), "squares")  # fmt: skip

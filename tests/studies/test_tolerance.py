@@ -2,11 +2,11 @@
 
 import json
 import math
-import subprocess
 from pathlib import Path
 
 import numpy as np
 import pytest
+from command import sealdyn
 from drawn import drawn, panel, text_trouble
 from killed import COMMAND, kill_midway, mark_first
 from scipy.stats import kstest, multivariate_normal, norm, sobol_indices, truncnorm, uniform
@@ -491,15 +491,15 @@ def test_an_interrupted_study_goes_on(tmp_path, closed_form):
 def test_a_killed_study_goes_on_without_repeating(tmp_path):
     command = [
         *COMMAND, "tolerance", str(PATH), "--scatter", "rotor.runout=normal(5 urad)", "--samples", "16", "--set",
-        "run.turns=150", "--out", str(tmp_path / "t.h5"), "--workers", "1", "--no-plot", "--json",
+        "run.turns=5", "--out", str(tmp_path / "t.h5"), "--workers", "1", "--no-plot", "--json",
     ]  # fmt: skip
     journal = tmp_path / "t.partial.jsonl"
     kill_midway(command, journal, 2)
     mark_first(journal, "h_min.value", 0.123456)
-    done = subprocess.run(command, capture_output=True, text=True, check=True)
-    answer = json.loads(done.stdout)
-    assert answer["samples"]["outputs"]["h_min.value"].count(0.123456) == 1 and not journal.exists()
-    assert "48 runs (16 samples x (1 keys + 2))" in done.stderr
+    done = sealdyn(*command[command.index("study") :], cwd=tmp_path)
+    answer = done.found
+    assert done.code == 0 and answer["samples"]["outputs"]["h_min.value"].count(0.123456) == 1 and not journal.exists()
+    assert "48 runs (16 samples x (1 keys + 2))" in done.err
 
 
 def test_chart_and_tables_show_the_answer(tmp_path, closed_form):

@@ -2,15 +2,13 @@
 
 import json
 import math
-import os
-import sys
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from drawn import text_trouble
-from killed import kill_midway
+from killed import COMMAND, kill_midway
 from scenes import fms, ring
 
 import sealdyn
@@ -381,19 +379,6 @@ def test_a_contact_on_one_side_is_said(tmp_path):
 
 # --- interrupted and killed -----------------------------------------------------------------------------
 
-SLOWLY = """
-import sys, time
-import sealdyn
-from sealdyn.studies._runner import run_study
-from sealdyn.studies.wear.averages import ShortRunAverages
-found = ShortRunAverages.__call__
-def slowly(self, depth, motion=None):
-    time.sleep(0.05)
-    return found(self, depth, motion)
-ShortRunAverages.__call__ = slowly
-run_study("wear", sealdyn.read_scenario(sys.argv[1]), sys.argv[2], workers=1)
-"""
-
 
 def steps_of(journal):
     return [json.loads(line)["key"] for line in journal.read_text().splitlines()[1:]]
@@ -404,10 +389,10 @@ def test_a_killed_study_goes_on_where_it_was(run_in, tmp_path, calls):
     """kill -9 in the middle: no finished step is taken again, and the answer is the same to the last digit."""
     out = tmp_path / "run_in.h5"
     journal = out.with_suffix(".partial.jsonl")
-    words = [sys.executable, "-c", SLOWLY, str(SCENARIOS / "run_in.toml"), str(out)]
-    kill_midway(words, journal, 6, env=os.environ | {"PYTHONPATH": str(Path(sealdyn.__file__).parents[1])})
+    words = [*COMMAND, "wear", str(SCENARIOS / "run_in.toml"), "--out", str(out), "--workers", "1", "--no-plot"]
+    kill_midway(words, journal, 6)
     done = len(steps_of(journal))
-    assert 6 < done < 40 and not out.exists()
+    assert done == 7 and not out.exists()
 
     answer = run_study("wear", read("run_in"), out, workers=1)
     rest = len(calls)

@@ -1,10 +1,7 @@
-"""A load from outside, a study from outside, and the examples of scenarios/own as a type checker and Dask see them."""
+"""A load from outside, a study from outside, and both as Dask sees them; types of the examples: test_typed_door.py."""
 
 import json
-import os
 import pickle
-import subprocess
-import sys
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -155,20 +152,6 @@ def test_kept_points_hang_on_the_source_of_a_load(folder):
     keys = content_keys(content_keys, [1])
     (folder / "own_tone.py").write_text(TONE + "\n# Another.\n")
     assert content_keys(content_keys, [1]) != keys
-
-
-@pytest.mark.slow
-def test_the_examples_are_typed(tmp_path):
-    pytest.importorskip("mypy", reason='mypy is not installed: pip install -e ".[test]"')
-    words = [sys.executable, "-m", "mypy", "--config-file=", "--strict", "--follow-imports=silent"]
-    files = sorted(OWN.glob("*/*.py"))
-    done = subprocess.run(
-        [*words, "--cache-dir", tmp_path, *files],
-        env=os.environ | {"MYPYPATH": str(Path(sealdyn.__file__).parents[1])},
-        capture_output=True,
-        text=True,
-    )
-    assert len(files) == 3 and done.returncode == 0, done.stdout
 
 
 @pytest.mark.slow

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 import typed_door
+from command import SCENARIOS
 
 import sealdyn
 
@@ -41,21 +42,22 @@ def test_the_script_runs(tmp_path, monkeypatch):
 
 @pytest.mark.slow
 def test_a_type_checker_agrees_and_finds_what_is_wrong(tmp_path):
+    """Of the script, of the examples of scenarios/own, and of lines that are wrong: one start for all."""
     pytest.importorskip("mypy", reason='mypy is not installed: pip install -e ".[test]"')
-    (tmp_path / "wrong.py").write_text(WRONG)
+    wrong, own = tmp_path / "wrong.py", sorted((SCENARIOS / "own").glob("*/*.py"))
+    wrong.write_text(WRONG)
     # A checker does not see through the finder of an editable installation: it is shown the folder,
-    # and asked of the two files alone.
+    # and asked of these files alone.
     words = [sys.executable, "-m", "mypy", "--config-file=", "--strict", "--follow-imports=silent"]
     place = os.environ | {"MYPYPATH": str(Path(sealdyn.__file__).parents[1])}
     done = subprocess.run(
-        [*words, "--cache-dir", tmp_path / "cache", SCRIPT, tmp_path / "wrong.py"],
+        [*words, "--cache-dir", tmp_path / "cache", SCRIPT, *own, wrong],
         capture_output=True,
         text=True,
         cwd=SCRIPT.parent,
         env=place,
     )
     errors = re.findall(r"^(.*?)(\w+\.py):(\d+): error: ", done.stdout, re.MULTILINE)
-    assert {int(line) for _, name, line in errors if name == "wrong.py"} == set(range(2, WRONG.count("\n") + 1)), (
-        done.stdout
-    )
-    assert all(name == "wrong.py" for _, name, _ in errors), done.stdout
+    found = {int(line) for _, name, line in errors if name == wrong.name}
+    assert len(own) == 3 and found == set(range(2, WRONG.count("\n") + 1)), done.stdout
+    assert all(name == wrong.name for _, name, _ in errors), done.stdout
