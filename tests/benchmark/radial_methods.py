@@ -81,8 +81,8 @@ def main():
     across, down = 3, 2
     with look():
         figure = sheet(14.0, 0.8 + 3.3 * down)
-        figure.text(0.03, 1 - 0.3 / figure.get_figheight(), "Radial seals: error (1e-12: none) against processor time", fontsize=14,
-                    weight="bold", va="center")  # fmt: skip
+        title = "Radial seals: error (1e-12: none) against processor time"
+        figure.text(0.03, 1 - 0.3 / figure.get_figheight(), title, fontsize=14, weight="bold", va="center")
         grid = figure.add_gridspec(down, across, left=0.06, right=0.985, bottom=0.5 / figure.get_figheight(),
                                    top=1 - 0.9 / figure.get_figheight(), wspace=0.25, hspace=0.45)  # fmt: skip
         print("| seal | chosen | fastest at 1e-03 | at 1e-04 |\n|---|---|---|---|")
