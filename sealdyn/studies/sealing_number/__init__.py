@@ -95,8 +95,9 @@ def run(scenario, settings, tools) -> Answer:
         "map": _map(ring, max(ratios)),
         "over_speed": _over_speed(scene, ring),
     }  # fmt: skip
+    torn = "no less than the cavity's" if ring.edges.sealed else "ambient where it diverges"
     notes = ["Their film, which the scene's has to be for the answer to be theirs, is flat and planar, constant over "
-             "the face, its pressure ambient where it diverges."]  # fmt: skip
+             f"the face, its pressure {torn}."]  # fmt: skip
     if ring.edges.sealed:
         least, most, _ = sealed.moment_limits(ring.edges)
         notes.append(f"Under the sealed pressure F_s is the {ring.spring_force:.4g} N of the closing force that the "
