@@ -163,8 +163,8 @@ def kinematics(tau, y, yp, p, w, s):
             angle = s[STATOR_ANGLE] if k == 0 else s[ROTOR_ANGLE]
             w[TURN + 2 * k], w[TURN + 2 * k + 1] = math.cos(angle), math.sin(angle)
     if p[OFFSET] != 0.0:
-        wide, spin = OWN_STATE + 6 * wide_ring(p[OFFSET:]), spin_s if wide_ring(p[OFFSET:]) == 1 else spin_r
-        shift(p[OFFSET:], w[wide : wide + 6], spin, w[CENTRE:], s)
+        wide = OWN_STATE + 6 * wide_ring(p[OFFSET:])
+        shift(p[OFFSET:], w[wide : wide + 6], w[CENTRE:], s)
 
 
 @inner_kernel()

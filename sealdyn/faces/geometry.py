@@ -180,9 +180,9 @@ def slip(block, s):
 
 
 @inner_kernel()
-def shift(block, wide, spin, centre, s):
+def shift(block, wide, centre, s):
     """The narrower face's `centre` (2,) (m), and the gap state `s` there, from displacements and rates `wide` (6,) of
-    the wider ring, (z, tilts, rates), and the `spin` (rad/s) of the narrower."""
+    the wider ring, (z, tilts, rates)."""
     turned = block[DIRECTION] + (s[STATOR_ANGLE] if block[OF_ROTOR] == 0.0 else s[ROTOR_ANGLE])
     x, y = block[OFFSET] * math.cos(turned), block[OFFSET] * math.sin(turned)
     centre[0], centre[1] = x, y
@@ -190,8 +190,9 @@ def shift(block, wide, spin, centre, s):
     sign = 1.0 if block[OF_ROTOR] != 0.0 else -1.0
     s[DZ] += sign * (wide[1] * y - wide[2] * x)
     s[DZ_RATE] += sign * (wide[4] * y - wide[5] * x)
-    s[DZ_RATE] += sign * spin * (wide[1] * x + wide[2] * y)
     pace = slip(block, s)
+    # The centre turns with the narrower ring.
+    s[DZ_RATE] += sign * (s[MEAN_SPIN] - pace) * (wide[1] * x + wide[2] * y)
     s[DZ_RATE] += pace * (x * s[GX] + y * s[GY])
     coned = pace * (block[CONED] + s[CONING_CHANGE]) / block[MEAN_RADIUS]
     s[GX_RATE] += coned * x

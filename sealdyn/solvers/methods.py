@@ -58,7 +58,7 @@ def scipy_steps(kind, implicit, segment, tau, y, method, tolerance, counts):
             raise SolverFailure(failure_message(method, str(error), solver.t)) from None
         if solver.status == "failed":
             raise SolverFailure(failure_message(method, message, solver.t))
-        # Rates of a film are not known from its unknowns alone.
+        # Between steps a film is interpolated with its rates.
         yield np.array([solver.t]), solver.y[None, :].copy(), counted(solver.t, solver.y)[None, :] if stores else None
 
 
