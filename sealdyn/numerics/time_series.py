@@ -8,7 +8,7 @@ A section holds one point (real or complex) per return of the motion, such as on
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import t as student
+from scipy.special import stdtrit
 
 from .order_spectrum import HANN, at_the_edge
 
@@ -113,7 +113,7 @@ def average(series, statistic=np.mean) -> dict:
         if length < 4:
             continue
         values = [float(statistic(part)) for part in series[: count * length].reshape(count, length)]
-        errors.append(float(np.std(values, ddof=1) / np.sqrt(count) * student.ppf(0.975, count - 1)))
+        errors.append(float(np.std(values, ddof=1) / np.sqrt(count) * stdtrit(count - 1, 0.975)))
     return {"value": float(statistic(series)), "uncertainty": max(errors)}
 
 
@@ -224,7 +224,7 @@ def uncertainty(series) -> float:
         if length < 2:
             break
         means = series[: count * length].reshape(count, length).mean(axis=1)
-        found.append(float(means.std(ddof=1) / np.sqrt(count) * student.ppf(0.975, count - 1)))
+        found.append(float(means.std(ddof=1) / np.sqrt(count) * stdtrit(count - 1, 0.975)))
     return max(found) if len(found) > 1 else float("inf")
 
 
