@@ -144,6 +144,13 @@ class Cases:
         self.found, self.dropped = len(items), len(items) - len(kept)
         config.hook.pytest_deselected(items=[item for item in items if item not in kept])
         items[:] = [item for item in items if item in kept]
+        # Files stay whole, each process its own, so that a shared fixture is paid once: the longest begin.
+        spent = Counter()
+        for item in items:
+            spent[item.path] += times["files"].get(file_of(item), {}).get(name_of(item), 0.0)
+        for path, fixture in {(item.path, one[0]) for item in items for one in traits(item)[1]}:
+            spent[path] += times["files"].get(path.relative_to(HERE).as_posix(), {}).get("@" + fixture, 0.0)
+        items.sort(key=lambda item: -spent[item.path])
 
     @pytest.hookimpl(wrapper=True)
     def pytest_fixture_setup(self, fixturedef):

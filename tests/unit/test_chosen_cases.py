@@ -98,6 +98,19 @@ def test_a_shared_fixture_is_paid_once(suite):
         assert set(ran(suite)[0]["a"]) == kept | {"cheap", "core"}
 
 
+def test_the_longest_file_begins_and_stays_whole(suite):
+    """Two processes each take one file: a shared fixture is set up once a file."""
+    files = {"test_a.py": {}, "test_b.py": {"@shared": 0.2}}
+    (suite.path / "durations.json").write_text(json.dumps({"seconds_a_file": 1.0, "files": files}))
+    lines = suite.runpytest_inprocess("-v", "--all", "-n", "0").stdout.str()
+    assert lines.index("test_b.py::test_cheap") < lines.index("test_a.py::test_cheap")
+    lines = suite.runpytest_subprocess("-v", "--all", "-n", "2", "--dist", "loadfile", "--no-loadscope-reorder")
+    processes = {
+        (file, process) for process, file in re.findall(r"\[(gw\d)\].* PASSED (test_[ab])", lines.stdout.str())
+    }
+    assert len(processes) == 2
+
+
 def test_all_rest_and_what_is_named(suite):
     allow(suite, 0.0, TIMES | {"test_one": 0.05})
     plain, everything, rest = (ran(suite, *words)[0]["a"] for words in ([], ["--all"], ["--rest"]))
