@@ -13,9 +13,15 @@ from sealdyn.closed_form import (
     radial_film_coefficients,
 )
 
-mp.mp.dps = 40
 FACE = ("inner_radius", "outer_radius", "clearance", "coning")
 REFERENCE = {name: GREEN_1989_SEAL[name] for name in (*FACE, "viscosity", "pressure_drop")}
+
+
+@pytest.fixture(autouse=True)
+def digits():
+    """Forty in these cases, and no others."""
+    with mp.workdps(40):
+        yield
 
 
 def exact(names=REFERENCE, **changes):
