@@ -13,6 +13,7 @@ as `@name`, paid by the first case that needs it. What takes less than `CHEAP` i
 named, only their times are written anew and the time a file may take stays.
 """
 
+import gc
 import json
 import math
 import os
@@ -151,6 +152,11 @@ class Cases:
         for path, fixture in {(item.path, one[0]) for item in items for one in traits(item)[1]}:
             spent[path] += times["files"].get(path.relative_to(HERE).as_posix(), {}).get("@" + fixture, 0.0)
         items.sort(key=lambda item: -spent[item.path])
+
+    def pytest_collection_finish(self):
+        # What has been imported and collected stays to the end: no collector of garbage need look at it again.
+        gc.collect()
+        gc.freeze()
 
     @pytest.hookimpl(wrapper=True)
     def pytest_fixture_setup(self, fixturedef):

@@ -106,7 +106,7 @@ def locate_contacts(t, q_all, q_rate_all, impulse, count, begin, end, reach, p, 
     imposed motion (rad/s); `state` (STATE,) is carried from call to call.
     """
     n, level = q_all.shape[1], f[TOUCH]
-    table, nodes = np.zeros((n, 2 * NODES)), np.zeros(2 * NODES)
+    table, nodes = np.zeros((2 * NODES, n)), np.zeros(2 * NODES)
     q, q_rate, out, seen = np.zeros(n), np.zeros(n), np.zeros(3), np.zeros((MOST_SCAN + 1, 3))
     # Times looked at in a step: the scan, and the located dips between its points.
     at, height = np.zeros(2 * MOST_SCAN + 2), np.zeros(2 * MOST_SCAN + 2)

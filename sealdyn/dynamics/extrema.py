@@ -231,7 +231,7 @@ def track_extremes(
     is filled: no film in the step is thinner than the first (m), its thinnest film nowhere thicker than the second.
     """
     n = q_all.shape[1]
-    table, nodes = np.zeros((n, 2 * NODES)), np.zeros(2 * NODES)
+    table, nodes = np.zeros((2 * NODES, n)), np.zeros(2 * NODES)
     q, q_rate, out, seen = np.zeros(n), np.zeros(n), np.zeros(3), np.zeros((MOST_SCAN + 1, 3))
     motion, imposed, ends = np.zeros((4, 3)), np.zeros((2, 6)), np.zeros((2, 3))
     films, cones, lower, wavy = np.zeros(2), np.zeros(2), np.zeros(3), f[WAVES] != 0.0

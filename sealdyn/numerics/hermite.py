@@ -46,7 +46,7 @@ def window(t, k, count, longest):
 def fit(t, q, q_rate, k, count, table, nodes):
     """Divided differences (confluent, Newton form) of every displacement for interval k.
 
-    `t` (count,), `q` and `q_rate` (count, n); `table` (n, 2 NODES) and `nodes` (2 NODES,) are filled.
+    `t` (count,), `q` and `q_rate` (count, n); `table` (2 NODES, n) and `nodes` (2 NODES,) are filled.
     Returns the number of conditions used: 4 (a cubic) to 2 NODES.
     """
     first, last = window(t, k, count, LONGEST)
@@ -56,21 +56,23 @@ def fit(t, q, q_rate, k, count, table, nodes):
     for m in range(0, size, 2):
         nodes[m] = nodes[m + 1] = t[near]
         for i in range(q.shape[1]):
-            table[i, m], table[i, m + 1] = q[near, i], q_rate[near, i]
+            table[m, i], table[m + 1, i] = q[near, i], q_rate[near, i]
         if near == right:
             right += 1
             near = left if left >= first else right
         else:
             left -= 1
             near = right if right < last else left
-    for i in range(q.shape[1]):
-        row = table[i]
-        # In its second place each step holds its rate: the first difference there.
-        for m in range(size - 2, 0, -2):
-            row[m] = (row[m] - row[m - 2]) / (nodes[m] - nodes[m - 2])
-        for order in range(2, size):
-            for m in range(size - 1, order - 1, -1):
-                row[m] = (row[m] - row[m - 1]) / (nodes[m] - nodes[m - order])
+    # In its second place each step holds its rate: the first difference there.
+    for m in range(size - 2, 0, -2):
+        span = nodes[m] - nodes[m - 2]
+        for i in range(q.shape[1]):
+            table[m, i] = (table[m, i] - table[m - 2, i]) / span
+    for order in range(2, size):
+        for m in range(size - 1, order - 1, -1):
+            span = nodes[m] - nodes[m - order]
+            for i in range(q.shape[1]):
+                table[m, i] = (table[m, i] - table[m - 1, i]) / span
     _drop_noise(0.5 * (t[k] + t[k + 1]), table, nodes, size)
     return size
 
@@ -80,22 +82,22 @@ def _drop_noise(middle, table, nodes, size):
     """Zero what each further step adds in the middle of the interval, from where it is more than the step before did:
     the motion's terms shrink, those of the steps' errors grow.  Terms that were small by chance are followed by ones
     that fall again, and fast."""
-    pairs, steps = np.zeros(NODES), size // 2
-    for i in range(table.shape[0]):
-        product = 1.0
-        for j in range(steps):
-            pairs[j] = 0.0
-            for m in range(2 * j, 2 * j + 2):
-                pairs[j] = max(pairs[j], abs(table[i, m] * product))
-                product *= middle - nodes[m]
+    pairs, steps, product = np.zeros((NODES, table.shape[1])), size // 2, 1.0
+    for m in range(size):
+        pair = pairs[m // 2]
+        for i in range(len(pair)):
+            term = abs(table[m, i] * product)
+            pair[i] = term if term > pair[i] else pair[i]
+        product *= middle - nodes[m]
+    for i in range(table.shape[1]):
         for j in range(2, steps):
-            if pairs[j] > pairs[j - 1]:
+            if pairs[j, i] > pairs[j - 1, i]:
                 falls = j + 1 < steps
                 for later in range(j + 1, steps):
-                    falls = falls and pairs[later] < FALLS * pairs[later - 1]
+                    falls = falls and pairs[later, i] < FALLS * pairs[later - 1, i]
                 if not falls:
                     for m in range(2 * j, size):
-                        table[i, m] = 0.0
+                        table[m, i] = 0.0
                     break
 
 
@@ -103,12 +105,13 @@ def _drop_noise(middle, table, nodes, size):
 def value(table, nodes, size, at, q, q_rate):
     """Displacements and rates (n,) at the time `at` from the differences of `fit` (Horner), into `q` and `q_rate`;
     `size` conditions."""
-    for i in range(q.shape[0]):
-        p, dp = table[i, size - 1], 0.0
-        for m in range(size - 2, -1, -1):
-            dp = dp * (at - nodes[m]) + p
-            p = p * (at - nodes[m]) + table[i, m]
-        q[i], q_rate[i] = p, dp
+    for i in range(len(q)):
+        q[i], q_rate[i] = table[size - 1, i], 0.0
+    for m in range(size - 2, -1, -1):
+        x = at - nodes[m]
+        for i in range(len(q)):
+            q_rate[i] = q_rate[i] * x + q[i]
+            q[i] = q[i] * x + table[m, i]
 
 
 @outer_kernel()
@@ -116,7 +119,7 @@ def sample(t, q, q_rate, count, begin, end, times, out, out_rate):
     """Displacements and rates at increasing `times` (m,), all inside steps [begin, end] of the `count`, into `out` and
     `out_rate` (m, n); `t` (count,), `q`, `q_rate` (count, n)."""
     n = q.shape[1]
-    table, nodes = np.zeros((n, 2 * NODES)), np.zeros(2 * NODES)
+    table, nodes = np.zeros((2 * NODES, n)), np.zeros(2 * NODES)
     k, size = begin, 0
     for j in range(len(times)):
         moved = size == 0
@@ -135,7 +138,7 @@ def sample_doubtful(t, q, q_rate, count, begin, end, times, out):
     open, they are left out.
     **Valid** steps that are short beside the motion, as those of a multistep method."""
     n = q.shape[1]
-    table, nodes, unused = np.zeros((n, 2 * NODES)), np.zeros(2 * NODES), np.empty(n)
+    table, nodes, unused = np.zeros((2 * NODES, n)), np.zeros(2 * NODES), np.empty(n)
     plain, own, there = np.zeros((n, NODES)), np.zeros(NODES), np.empty(n)
     trusted = np.ones(n, dtype=np.bool_)
     k, size, known = begin, 0, 0

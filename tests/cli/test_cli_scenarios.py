@@ -7,6 +7,7 @@ from unittest import mock
 
 import numpy as np
 import pytest
+import xarray
 from command import REFERENCE, SCENARIOS, finished, sealdyn, settings, short, started
 
 from sealdyn import open_archive
@@ -75,8 +76,19 @@ def ending(answer):
     return ("inaccurate", 5) if Path(answer.found["archive"]).stem == "squeeze" else ("ok", 0)
 
 
+def opens_for_a_stranger(path, data, status):
+    """An archive, beside the same one opened by this package: xarray alone."""
+    with xarray.open_dataset(path, engine="h5netcdf") as plain:
+        xarray.testing.assert_identical(plain.assign_attrs(rows=data.attrs["rows"]), data)
+    assert data.h_min.dims == ("time",)
+    wanted = {"units", "long_name", "display_unit", "display_factor"}
+    assert all(wanted <= series.attrs.keys() for series in data.values())
+    assert (data.h_min.attrs["display_unit"], data.h_min.attrs["display_factor"]) == ("µm", 1e6)
+    assert data.attrs["status"] == status and "[film]" in data.attrs["scenario"]
+
+
 def test_run_answers_with_the_whole_contract(run):
-    folder, answer, _ = run
+    folder, answer, data = run
     found = answer.found
     assert (found["status"], answer.code) == ending(answer), answer.err
     assert found.keys() >= CONTRACT.keys() | PLAIN
@@ -91,7 +103,9 @@ def test_run_answers_with_the_whole_contract(run):
     stem = found["archive"].removeprefix("outputs/").removesuffix(".h5")
     figure = [f"{stem}.png"] if stem in DRAWN else []
     assert sorted(path.name for path in (folder / "outputs").iterdir()) == [f"{stem}.h5", *figure]
-    assert not figure or (folder / found["figure"]).read_bytes()[:4] == b"\x89PNG"
+    if figure:
+        assert (folder / found["figure"]).read_bytes()[:4] == b"\x89PNG"
+        opens_for_a_stranger(folder / found["archive"], data, found["status"])
 
 
 def is_mean(value, series, slack=0.0) -> bool:
@@ -153,20 +167,6 @@ def test_leakage_and_friction_are_those_of_the_annulus(run):
         assert float(data.leakage_inner[0]) == pytest.approx(flow, rel=0.02)
     assert float(data.friction_torque[0]) == pytest.approx(torque, rel=0.06)
     assert found["leakage"]["mean_ml_per_h"] == pytest.approx(found["leakage"]["mean"] * 1e6 * 3600)
-
-
-def test_archive_opens_for_a_stranger(run):
-    """xarray alone, without this package."""
-    import xarray
-
-    folder, answer, data = run
-    with xarray.open_dataset(folder / answer.found["archive"], engine="h5netcdf") as plain:
-        xarray.testing.assert_identical(plain.assign_attrs(rows=data.attrs["rows"]), data)
-    assert data.h_min.dims == ("time",)
-    wanted = {"units", "long_name", "display_unit", "display_factor"}
-    assert all(wanted <= series.attrs.keys() for series in data.values())
-    assert (data.h_min.attrs["display_unit"], data.h_min.attrs["display_factor"]) == ("µm", 1e6)
-    assert data.attrs["status"] == ending(answer)[0] and "[film]" in data.attrs["scenario"]
 
 
 @pytest.mark.core

@@ -77,7 +77,7 @@ def test_much_shorter_or_longer_neighbours_are_left_out():
     # The long interval before the short ones keeps to the left, the short ones to themselves.
     assert window(t, 1, len(t), LONGEST) == (0, 3)
     assert window(t, 4, len(t), LONGEST) == (2, 6)
-    table, nodes = np.zeros((1, 2 * NODES)), np.zeros(2 * NODES)
+    table, nodes = np.zeros((2 * NODES, 1)), np.zeros(2 * NODES)
     q = np.zeros((len(t), 1))
     assert fit(t, q, q, 4, len(t), table, nodes) == 8
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
+from scipy.integrate import odeint
 from scipy.linalg import expm
 
 from sealdyn.numerics.time_series import horizon, tangent_product, two_trajectories, uncertainty
@@ -31,7 +31,7 @@ def lorenz_rate(t, x):
 
 
 def lorenz(x):
-    return solve_ivp(lorenz_rate, (0.0, LORENZ_TIME), x, method="DOP853", rtol=1e-9, atol=1e-9).y[:, -1]
+    return odeint(lorenz_rate, x, (0.0, LORENZ_TIME), rtol=1e-9, atol=1e-9, tfirst=True)[-1]
 
 
 def lorenz_tangent(x, q):
@@ -39,7 +39,8 @@ def lorenz_tangent(x, q):
         a = np.array([[-10.0, 10.0, 0.0], [28.0 - y[2], -1.0, -y[0]], [y[1], y[0], -8.0 / 3.0]])
         return np.concatenate([lorenz_rate(t, y), (a @ y[3:].reshape(3, -1)).ravel()])
 
-    y = solve_ivp(rate, (0.0, LORENZ_TIME), np.concatenate([x, q.ravel()]), rtol=1e-8, atol=1e-8).y[:, -1]
+    start = np.concatenate([x, q.ravel()])
+    y = odeint(rate, start, (0.0, LORENZ_TIME), rtol=1e-8, atol=1e-8, tfirst=True)[-1]
     return y[:3], y[3:].reshape(3, -1)
 
 
