@@ -244,9 +244,9 @@ def test_what_is_kept_is_what_is_computed(checks):
 
 
 @pytest.fixture(scope="module")
-def rows():
+def rows(tmp_path_factory):
     """What `sealdyn validate green-1989 --json` says."""
-    return sealdyn("validate", "green-1989", "--json").found["checks"]
+    return sealdyn("validate", "green-1989", "--json", cwd=tmp_path_factory.mktemp("green")).found["checks"]
 
 
 # What Green prints and what is computed from his formulas: (seal, c, quantity) -> printed, computed, verdict.
