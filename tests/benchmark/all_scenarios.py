@@ -68,11 +68,12 @@ def draw(paths, out):
                     weight="bold", va="center")  # fmt: skip
         machine = read_study(paths[0])["answer"]["machine"]
         words = ", ".join(f"{k} {machine[k]}" for k in ("python", "numpy", "scipy", "scikit-sundae", "numba"))
+        words += f"; solvers {', '.join(solvers(paths))}"
         figure.text(
             0.03,
             1 - 0.56 / height,
-            f"{machine['processor']}, {machine['cores']} cores; {words}; largest error"
-            " of h_min, leakage, relative misalignment, contact impulse over time",
+            f"{machine['processor']}, {machine['cores']} cores; {words}; largest error over time"
+            " of h_min, leakage, relative misalignment, contact impulse",
             fontsize=9,
             va="center",
         )
@@ -102,6 +103,11 @@ def draw(paths, out):
         return save(figure, out)
 
 
+def solvers(paths) -> list[str]:
+    """Digests of the solvers that the archives are of."""
+    return sorted({read_study(path).get("solvers", "of no name") for path in paths})
+
+
 def winners(paths) -> dict:
     """Who is fastest at which error on every scenario, as the studies' archives have it."""
     scenes, machine = [], {}
@@ -113,7 +119,8 @@ def winners(paths) -> dict:
                        "where": answer["where"],
                        "judge_error": (answer["judge_error"] or {}).get(answer["where"]),
                        "fastest": answer["fastest"]})  # fmt: skip
-    return {"command": "python tests/benchmark/all_scenarios.py", "machine": machine, "scenes": scenes}
+    return {"command": "python tests/benchmark/all_scenarios.py", "machine": machine, "solvers": solvers(paths),
+            "scenes": scenes}  # fmt: skip
 
 
 def main():

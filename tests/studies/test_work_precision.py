@@ -176,6 +176,25 @@ def test_a_run_that_takes_too_long_is_stopped(tmp_path):
     assert row["error"]["end"][-1] is None
 
 
+@pytest.mark.parametrize(
+    "ends, tried",
+    [("stopped ok ok", 3), ("stopped stopped ok", 2), ("ok stopped ok", 2), ("failed stopped ok", 2), ("ok ok ok", 3)],
+)
+def test_tighter_runs_are_tried_until_one_after_the_first_is_stopped(monkeypatch, ends, tried):
+    """At the loosest tolerance a method may crawl where a tighter one goes by."""
+    left = iter(ends.split())
+
+    def measured(scenario, method, tolerance, point, exact, limit):
+        row = {"tolerance": tolerance, "processor": 1.0, "rhs": 1, "status": next(left), "reason": "", "back_end": ""}
+        return row | {"errors": {where: {"h_min": tolerance} for where in study.WHERE}}
+
+    monkeypatch.setattr(study, "_measured", measured)
+    monkeypatch.setattr(study, "observe", lambda *_: None)
+    point = {"method": "adams", "samples": 2, "tolerances": [1e-2, 1e-4, 1e-6], "limit": 2.0, "repeats": 1}
+    row = study.judge(scenario("fmr_reference"), None, {}, point)
+    assert row["status"] == ends.split()[:tried] and len(row["error"]["end"]) == tried
+
+
 def test_a_hundred_times_slower_is_a_cross():
     fast = {"error": {"end": [1e-3, 1e-6]}, "processor": [0.01, 0.02], "status": ["ok", "ok"], "reason": ["", ""]}
     slow = {"error": {"end": [1e-3, 1e-5]}, "processor": [0.9, 3.0], "status": ["ok", "ok"], "reason": ["", ""]}
