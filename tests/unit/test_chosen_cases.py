@@ -54,7 +54,8 @@ def allow(suite, seconds, times):
 
 def ran(suite, *words):
     """Cases of each file that run, and what the last lines say of those left out."""
-    way = suite.runpytest_subprocess if "2" in words else suite.runpytest_inprocess
+    # What is measured has a process of its own: its collector of garbage sees nothing of the cases before.
+    way = suite.runpytest_subprocess if {"2", "--measure"} & {*words} else suite.runpytest_inprocess
     result = way("-v", *words)
     passed = re.findall(
         r"(test_[ab])\.py::test_(\S+) PASSED|PASSED \S* *test_([ab])\.py::test_(\S+)", result.stdout.str()
