@@ -20,6 +20,7 @@ import os
 import sys
 import time
 from collections import Counter, defaultdict
+from itertools import chain
 from pathlib import Path
 
 import pytest
@@ -85,6 +86,12 @@ def affordable(cases, seconds, allowed):
     return set(chosen), spent
 
 
+def whole_time(items, times):
+    """Time (s) of these cases of one file and of the shared fixtures that they need."""
+    cases = {name_of(item): traits(item) for item in items}
+    return affordable(cases, times["files"].get(file_of(items[0]), {}), math.inf)[1]
+
+
 def allowed_per_file(files, seconds, budget):
     """Time (s) a file may take for all to stay within a budget (s). `files`: cases as above by file; `seconds` too."""
     low, high = 0.0, budget
@@ -144,14 +151,9 @@ class Cases:
             kept = set(items) - kept
         self.found, self.dropped = len(items), len(items) - len(kept)
         config.hook.pytest_deselected(items=[item for item in items if item not in kept])
-        items[:] = [item for item in items if item in kept]
         # Files stay whole, each process its own, so that a shared fixture is paid once: the longest begin.
-        spent = Counter()
-        for item in items:
-            spent[item.path] += times["files"].get(file_of(item), {}).get(name_of(item), 0.0)
-        for path, fixture in {(item.path, one[0]) for item in items for one in traits(item)[1]}:
-            spent[path] += times["files"].get(path.relative_to(HERE).as_posix(), {}).get("@" + fixture, 0.0)
-        items.sort(key=lambda item: -spent[item.path])
+        groups = filter(None, ([item for item in group if item in kept] for group in by_file.values()))
+        items[:] = chain(*sorted(groups, key=lambda group: -whole_time(group, times)))
 
     def pytest_collection_finish(self):
         # What has been imported and collected stays to the end: no collector of garbage need look at it again.

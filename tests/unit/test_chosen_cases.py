@@ -4,6 +4,8 @@ import json
 import re
 from pathlib import Path
 
+import mpmath
+import numpy as np
 import pytest
 
 pytest_plugins = ["pytester"]
@@ -159,3 +161,9 @@ def test_no_case_is_named_by_a_path_of_this_machine():
     """Its time would be nobody else's."""
     files = json.loads(CONFTEST.with_name("durations.json").read_text())["files"]
     assert not [name for cases in files.values() for name in cases if "Path(" in name]
+
+
+def test_no_file_sets_a_library_for_all_others():
+    """A process has collected every file by now: what one sets at its import holds for all cases."""
+    assert mpmath.mp.dps == 15
+    assert np.geterr() == {"divide": "warn", "over": "warn", "under": "ignore", "invalid": "warn"}

@@ -78,6 +78,8 @@ def test_kernels_are_kept_wherever_can_be_written(package):
     found, words = package()
     assert found == COLD and ("NUMBA_CACHE_DIR" in words) == (not package.keeps)
     assert package()[0] == (WARM if package.keeps else COLD)
+    changed(package, "faces/slots.py", "2.0", "3.0")
+    assert package()[0] == (30.0, 1, 4)
 
 
 @pytest.mark.parametrize("package", PLACES[:1], indirect=True)
