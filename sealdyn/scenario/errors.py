@@ -1,23 +1,14 @@
-"""What is wrong with a scenario, in one line (file, table, key, found, expected, nearest valid spelling); names of the
-design rules that a scenario may acknowledge; and the door of the reader: how deep, long and many what comes in may be,
-before anything in it is read or searched.
-
-Files, `--set`, the scenarios of archives, settings of studies and tables made in Python all pass the door; behind it a
-text is one that a terminal can print, a key is a string, an integer one that Python prints, and whatever goes down the
-tables comes to an end.
-"""
+"""What is wrong with a scenario, in one line (file, table, key, found, expected, nearest valid spelling); what each of
+its tables may hold, in words; names of the design rules that it may acknowledge."""
 
 import dataclasses
 import math
 import re
 import types
 import typing
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from functools import cache
 from typing import Any
-
-import numpy as np
 
 from ..extensions import OUTSIDE
 from ..scene.scene import SceneError
@@ -28,13 +19,13 @@ from ..units import (
     ListedQuantity,
     Quantity,
     QuantityError,
-    RadiusQuantity,
     VaryingQuantity,
     Velocity,
     cut,
     printable,
     quoted,
 )
+from .keys import diameters, is_list, table_in, tables, without_indices
 
 LENGTH, VELOCITY, DENSITY = (kind.__metadata__[0] for kind in (Length, Velocity, Density))
 KINEMATIC = Quantity("kinematic viscosity", "m^2/s", '"1 cSt"')
@@ -87,63 +78,39 @@ class ScenarioError(Exception):
 
 
 @contextmanager
-def scene_errors_of(name: str):
-    """What is wrong with a scene, raised as a ScenarioError of the scenario `name`."""
+def scene_errors_of(name: str) -> Iterator[None]:
+    """What is wrong with a scene or its tables, raised as a ScenarioError of the scenario `name`."""
     try:
         yield
     except SceneError as error:
-        raise ScenarioError(name, error.key, error.found, error.expected) from None
+        name += "".join(getattr(error, "__notes__", ()))
+        first, *rest = (ScenarioError(name, e.key, e.found, e.expected) for e in (error, *error.others))
+        first.others = tuple(rest)
+        raise first from None
 
 
-def together(errors: list[ScenarioError]) -> ScenarioError:
-    """The first of the errors, with the others in its `others`: one of each key, MOST in all."""
-    kept = {}
+@contextmanager
+def set_by(override: str) -> Iterator[None]:
+    """What is wrong with a value that was set is told with its override, behind the name of the scenario."""
+    try:
+        yield
+    except SceneError as error:
+        error.add_note(f" (--set {quoted(override)})")
+        raise
+
+
+def refuse(errors: Iterable[SceneError]) -> None:
+    """Raises the first of the errors, if any, with the others in its `others`: one of each key, MOST in all."""
+    kept: dict[str, SceneError] = {}
     for error in errors:
         kept.setdefault(error.key, error)
+    if not kept:
+        return
     first, *rest = kept.values()
     if len(rest) >= MOST:
-        more = ScenarioError(first.name, "", f"{len(rest) - MOST + 2} more", "those above corrected first")
-        rest = [*rest[: MOST - 2], more]
+        rest = [*rest[: MOST - 2], SceneError("", f"{len(rest) - MOST + 2} more", "those above corrected first")]
     first.others = tuple(rest)
-    return first
-
-
-@cache
-def tables(kind: type, path: str = "") -> dict[str, dict[str, Any]]:
-    """Every table a scenario may have, by dotted path: {path: {key: what it holds (a type)}}, from the dataclass
-    `kind`."""
-    keys = {f.name: f.type for f in dataclasses.fields(kind)}
-    found = {path: keys}
-    for key, holds in keys.items():
-        below = table_in(holds)
-        if below:
-            found |= tables(below, f"{path}.{key}" if path else key)
-    return found
-
-
-def table_in(holds: Any) -> type | None:
-    """The table a key holds (alone, optional, in a list, or instead of a word), if it holds one."""
-    if dataclasses.is_dataclass(holds):
-        return holds
-    if typing.get_origin(holds) in (list, typing.Union, types.UnionType):
-        return next((t for t in map(table_in, typing.get_args(holds)) if t), None)
-    return None
-
-
-def diameters(keys: dict[str, Any]) -> dict[str, str]:
-    """{"outer_diameter": "outer_radius"} of a table's `keys` {key: what it holds (a type)}."""
-    radii = (key for key, holds in keys.items() if _is_radius(holds))
-    return {key.replace("radius", "diameter"): key for key in radii}
-
-
-def _is_radius(holds: Any) -> bool:
-    kinds = [holds, *typing.get_args(holds)]
-    return any(isinstance(part, RadiusQuantity) for kind in kinds for part in getattr(kind, "__metadata__", ()))
-
-
-def is_list(holds: Any) -> bool:
-    """Whether a key holds a list of tables."""
-    return typing.get_origin(holds) is list and dataclasses.is_dataclass(typing.get_args(holds)[0])
+    raise first
 
 
 def expected_of(key: str, holds: Any) -> str:
@@ -173,11 +140,6 @@ def expected_of(key: str, holds: Any) -> str:
 def keys_in(kind: type) -> list[str]:
     """Keys of the table that a dataclass describes."""
     return [f.name for f in dataclasses.fields(kind)]
-
-
-def without_indices(path: str) -> str:
-    """A dotted path without the numbers of list entries: "housing.axial.0.frequency" is "housing.axial.frequency"."""
-    return ".".join(part for part in path.split(".") if not part.isdigit())
 
 
 def nearest_of(word: Any, known: Iterable[str], cutoff: float = 0.6) -> str:
@@ -212,18 +174,18 @@ def nearest(kind: type, path: str, key: str) -> str:
     return cut(f"the keys here are {', '.join(here)}", FEW_WORDS)
 
 
-def explained(name: str, kind: type, raw: dict, errors: list[dict]) -> list[ScenarioError]:
-    """ScenarioErrors of pydantic's errors, the most telling first: unknown keys, wrong values, missing keys, but not
-    those missing that are there misspelt.  `name` of the scenario, `kind` its dataclass, `raw` its tables."""
+def explained(kind: type, raw: dict, errors: list[dict]) -> list[SceneError]:
+    """SceneErrors of pydantic's errors, the most telling first: unknown keys, wrong values, missing keys, but not
+    those missing that are there misspelt.  `kind` is the scenario's dataclass, `raw` its tables."""
     rank = {"unexpected_keyword_argument": 0, "missing": 2}
     relevant = [e for e in errors if not _beside_the_point(raw, e["loc"])] or errors
     # More than are told need no words.
-    found = [_explained(name, kind, raw, e) for e in sorted(relevant, key=lambda e: rank.get(e["type"], 1))[: 4 * MOST]]
+    found = [_explained(kind, raw, e) for e in sorted(relevant, key=lambda e: rank.get(e["type"], 1))[: 4 * MOST]]
     meant = {key for error in found for key in _meant(error)}
     return [error for error in found if not (error.found in MISSING and error.key in meant)]
 
 
-def _meant(error: ScenarioError) -> list[str]:
+def _meant(error: SceneError) -> list[str]:
     """Dotted keys that an unknown key may have been meant for."""
     near = NEAR.search(error.expected) if error.found.startswith("an unknown") else None
     if not near:
@@ -232,18 +194,18 @@ def _meant(error: ScenarioError) -> list[str]:
     return [table + dot + near[1], table + dot + near[1].replace("diameter", "radius")]
 
 
-def _explained(name: str, kind: type, raw: dict, error: dict) -> ScenarioError:
+def _explained(kind: type, raw: dict, error: dict) -> SceneError:
     unknown = error["type"] == "unexpected_keyword_argument"
     path, holds, value = _follow(kind, raw, error["loc"], keep_last=unknown)
     key = ".".join(path)
     if unknown:
-        return _unknown(name, kind, path, error["input"])
+        return _unknown(kind, path, error["input"])
     if error["type"] == "missing" or value is NOTHING:
         found = MISSING[bool(table_in(holds))]
-        return ScenarioError(name, key, found, expected_of(key, holds))
+        return SceneError(key, found, expected_of(key, holds))
     cause = error.get("ctx", {}).get("error")
     if isinstance(cause, QuantityError):
-        return ScenarioError(name, key, cause.found, cause.expected + _in_place(key, value, raw))
+        return SceneError(key, cause.found, cause.expected + _in_place(key, value, raw))
     expected = _expected_here(path, holds, error)
     words = [w for a in (holds, *typing.get_args(holds)) for w in typing.get_args(a) if isinstance(w, str)]
     hint = nearest_of(value, words)
@@ -251,7 +213,7 @@ def _explained(name: str, kind: type, raw: dict, error: dict) -> ScenarioError:
     hint = hint or (f"; nearest '{inside[0]}'" if inside else "")
     if isinstance(value, str) and (percent := PERCENT.fullmatch(value)):
         expected += f", e.g. {float(percent[1]) / 100:.6g}"
-    return ScenarioError(name, key, quoted(value), expected + hint)
+    return SceneError(key, quoted(value), expected + hint)
 
 
 def _in_place(key: str, value: Any, raw: dict) -> str:
@@ -299,14 +261,14 @@ def _expected_here(path: list[str], holds: Any, error: dict) -> str:
     return expected_of(key, holds) + limit
 
 
-def _unknown(name: str, kind: type, path: list[str], value: Any) -> ScenarioError:
+def _unknown(kind: type, path: list[str], value: Any) -> SceneError:
     table, key = ".".join(path[:-1]), path[-1]
     what, valid = ("an unknown key", f"a key of [{table}]") if table else ("an unknown table", "a known table")
     if isinstance(value, dict) and table in OUTSIDE:
         valid += f", or the name of one of the {OUTSIDE[table]} on SEALDYN_PATH, which this is not"
     near, like = nearest(kind, table, key), _table_like(kind, table, key, value)
     near = f"nearest {like}" if like and not near.startswith("the table") else near
-    return ScenarioError(name, ".".join([*path[:-1], quoted(key).strip('"')]), what, f"{valid}; {near}")
+    return SceneError(".".join([*path[:-1], quoted(key).strip('"')]), what, f"{valid}; {near}")
 
 
 def _table_like(kind: type, path: str, key: str, raw: Any) -> str:
@@ -338,7 +300,7 @@ def _follow(kind: type, raw: Any, location: tuple, keep_last: bool) -> tuple[lis
     path, holds, value = [], kind, raw
     for n, step in enumerate(location):
         table = table_in(holds)
-        keys = {f.name: f.type for f in dataclasses.fields(table)} if table else {}
+        keys = tables(table)[""] if table else {}
         if isinstance(step, int):
             holds = typing.get_args(holds)[0] if is_list(holds) else holds
             value = value[step] if isinstance(value, list) and step < len(value) else NOTHING
@@ -370,81 +332,3 @@ def unknown_rules(acknowledged, known: tuple[str, ...] = FACE_RULES) -> list[tup
         for name in acknowledged
         if name not in known
     ]  # fmt: skip
-
-
-# Levels of tables and lists, characters of a key and of a string, entries in all (the samples of two motions and their
-# like), and the largest integer.
-DEEPEST, LONGEST_KEY, LONGEST_STRING, MOST_ENTRIES, LARGEST = 20, 200, 10_000, 2_000_000, 10**40
-# Characters of a text, which may hold the samples of motions.
-MOST_CHARACTERS = 1 << 26
-# Dotted keys beyond any table, which a TOML parser goes through once for each of their parts, and digits in a row that
-# no number has: some parsers take the square of their count.
-PART = r"""(?:"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+'|[^\s.=,#\[\]{}"']++)"""
-DEEP_KEY = re.compile(rf"(?<![^\s.=,#\[\]{{}}])(?:{PART}[ \t]*+\.[ \t]*+){{{DEEPEST}}}")
-LONG_NUMBER = re.compile(r"(?<!\d)\d{2000}")
-
-
-def refuse_unreadable(text: str, name: str) -> None:
-    """Raises ScenarioError for a text of the scenario `name` that would take a parser long."""
-    if not isinstance(text, str):
-        raise ScenarioError(name, "", quoted(text), "text")
-    if len(text) > MOST_CHARACTERS:
-        raise ScenarioError(name, "", f"{len(text)} characters", f"at most {MOST_CHARACTERS}")
-    if surrogate := _surrogate(text):
-        raise ScenarioError(name, "", f"half a character ({surrogate})", "text in UTF-8")
-    for pattern, what in ((DEEP_KEY, "tables too deep"), (LONG_NUMBER, "a number of thousands of digits")):
-        if place := pattern.search(text):
-            line = text.count("\n", 0, place.start()) + 1
-            raise ScenarioError(name, "", f"{what} (line {line})", "a scenario file (TOML)")
-
-
-def refuse_unbounded(tree: Any, name: str, key: str = "") -> None:
-    """Raises ScenarioError for tables of the scenario `name` that are deeper, longer or more than a scenario's, or hold
-    keys that are no strings; `key` is the path to them."""
-    left, entries = [(tree, key, 0)], 0
-    while left:
-        held, path, depth = left.pop()
-        if isinstance(held, np.ndarray):
-            held = held.tolist()
-        if isinstance(held, dict | list | tuple):
-            entries += len(held)
-            if depth >= DEEPEST:
-                raise ScenarioError(name, path, "tables too deep", "at most 3 levels")
-            if entries > MOST_ENTRIES:
-                raise ScenarioError(name, path, f"more than {MOST_ENTRIES} entries", "fewer")
-        if isinstance(held, dict):
-            for step, below in held.items():
-                _refuse_key(step, name, path)
-                left.append((below, f"{path}.{step}" if path else step, depth + 1))
-        elif isinstance(held, list | tuple):
-            # Numbers by the thousand are neither long nor deep.
-            left += [(below, path, depth + 1) for below in held if not isinstance(below, float)]
-        elif isinstance(held, str):
-            _refuse_string(held, name, path)
-        elif isinstance(held, int) and abs(held) > LARGEST:
-            raise ScenarioError(name, path, quoted(held, 40), f"a number of at most {LARGEST:.0e} in size")
-
-
-def _refuse_key(key: Any, name: str, path: str) -> None:
-    if not isinstance(key, str):
-        raise ScenarioError(name, path, f"the key {quoted(key)}", "a string as a key")
-    if len(key) > LONGEST_KEY or _surrogate(key):
-        raise ScenarioError(
-            name, path, f"the key {quoted(key)}", f"a key of at most {LONGEST_KEY} characters, in UTF-8"
-        )
-
-
-def _refuse_string(words: str, name: str, path: str) -> None:
-    if len(words) > LONGEST_STRING:
-        raise ScenarioError(name, path, f"a string of {len(words)} characters", f"at most {LONGEST_STRING}")
-    if surrogate := _surrogate(words):
-        raise ScenarioError(name, path, f"half a character ({surrogate})", "text in UTF-8")
-
-
-def _surrogate(text: str) -> str:
-    """The half of a character in a text, which no file can hold, as code; "" if there is none."""
-    try:
-        text.encode()
-    except UnicodeEncodeError as error:
-        return f"U+{ord(text[error.start]):04X}"
-    return ""

@@ -8,11 +8,13 @@ import os
 import re
 import stat
 from bisect import bisect_left, bisect_right
+from collections.abc import Set
 from pathlib import Path
-from typing import Any, get_args, get_type_hints
+from typing import Any, get_type_hints
 
 from ..scene.excitation import ACCELERATIONS, MOTION_COLUMNS
 from ..scene.loads import LOAD_COLUMNS
+from ..scene.scene import SceneError
 from ..scene.tabulated import COLUMNS, Tabulated
 from ..units import (
     MOST_LISTED,
@@ -29,7 +31,7 @@ from ..units import (
     quantity_of,
     quoted,
 )
-from .errors import ScenarioError, tables, without_indices
+from .keys import held_at, is_marked, leaves
 
 # Of a file; what is more than MOST_LISTED is cut to the run.
 MOST_ROWS = 5_000_000
@@ -63,20 +65,28 @@ NOTHING = 1e-25
 
 
 def with_columns(
-    raw: dict, kind: type, name: str, folder: Path | None, held: dict, wrong: list[ScenarioError], bare: list[str]
-) -> dict:
-    """The tables `raw` of the scenario `name`, of a `kind` of file, with the columns of the files that they name.  A
-    table of samples keeps the file's name beside them, a quantity over time does not.  Files are looked for from
-    `folder`; `held`: an archive's resolved tables, whose columns stand for the file of that name.  What is wrong with
-    a file goes to `wrong`, keys of columns without a unit to `bare`."""
+    raw: dict, kind: type, folder: Path | None, held: dict | None, asked: Set[str]
+) -> tuple[dict, list[SceneError], list[str]]:
+    """The tables `raw`, of a `kind` of file, with the columns of the files that they name, what is wrong with a file,
+    and keys of columns without a unit.  A table of samples keeps the file's name beside them, a quantity over time does
+    not.  Files are looked for from `folder`; `held`: an archive's resolved tables, whose columns stand for the file of
+    that name.  Raises SceneError for a file that the archive does not hold: a stranger's words open none, but keys that
+    the user has `asked` for."""
     over_time = quantities_of_files(raw, kind)
+    wrong: list[SceneError] = []
+    bare: list[str] = []
     for table, known in (PLACES | over_time).items():
-        motion, kept = samples_at(raw, table), samples_at(held, table)
-        if not isinstance(motion.get("file"), str) or next(iter(known)) in motion:
+        motion, kept, key = samples_at(raw, table), samples_at(held, table), f"{table}.file"
+        first, file = next(iter(known)), motion.get("file")
+        if "file" not in motion or first in motion:
             continue
-        file, key = motion["file"], f"{table}.file"
         if table in over_time:
-            kept = {"file": file, **kept} if "value" in kept else {}
+            kept = {"file": file, **kept} if "value" in kept and not is_asked(key, asked) else {}
+        if held is not None and not is_asked(key, asked) and (first not in kept or kept.get("file") != file):
+            found = f"{quoted(file)}, which the archive does not hold"
+            raise SceneError(key, found, f"--set {key}=FILE, where it is meant")
+        if not isinstance(file, str):
+            continue
         try:
             columns = {}
             if kept.get("file") != file:
@@ -91,9 +101,9 @@ def with_columns(
             given = {column: values for column, (values, _) in columns.items()} or kept
             bare += [f"{table}.{column}" for column, (_, unit) in columns.items() if not unit]
         except QuantityError as error:
-            wrong.append(ScenarioError(name, key, error.found, error.expected))
+            wrong.append(SceneError(key, error.found, error.expected))
             # Another thing that is wrong is not this one's fault.
-            first, second, *_ = known
+            _, second, *_ = known
             given = {first: [float(n) for n in range(1, 7)], second: [0.0] * 5 + [1e-9]}
             given |= {"time": [float(n) for n in range(6)], "value": [1.0] * 6} if first == "time" else {}
         if table in over_time:
@@ -102,34 +112,23 @@ def with_columns(
         else:
             columns = {column: given[column] for column in known if given.get(column) is not None} | motion
         raw = _replaced(raw, table.split("."), columns)
-    return raw
+    return raw, wrong, bare
+
+
+def is_asked(key: str, asked: Set[str]) -> bool:
+    """Whether a dotted key, or a table that it stands in, is among those that are `asked` for."""
+    return any(f"{key}.".startswith(f"{step}.") for step in asked)
 
 
 def quantities_of_files(raw: dict, kind: type) -> dict[str, dict]:
     """What is given over time by a file, { file = "speed.csv" }, in the tables `raw` of a `kind` of file: dotted key ->
     {column: quantity}, time and the key's own name or "value"."""
     found: dict[str, dict] = {}
-    every = tables(kind)
-
-    def look(tree, path: tuple[str, ...]) -> None:
-        for step, value in tree.items() if isinstance(tree, dict) else enumerate(tree):
-            key = ".".join((*path, str(step)))
-            table, _, last = without_indices(key).rpartition(".")
-            holds = every.get(table, {}).get(last)
-            if isinstance(value, dict) and "file" in value and _varies(holds):
-                quantity = quantity_of(holds)
-                found[key] = {"time": SECONDS, last: quantity, "value": quantity}
-            elif isinstance(value, dict | list) and without_indices(key) in every:
-                look(value, (*path, str(step)))
-
-    look(raw, ())
+    for key, value in leaves(raw, kind):
+        if isinstance(value, dict) and "file" in value and is_marked(holds := held_at(kind, key), VaryingQuantity):
+            quantity = quantity_of(holds)
+            found[key] = {"time": SECONDS, key.rpartition(".")[2]: quantity, "value": quantity}
     return found
-
-
-def _varies(holds: Any) -> bool:
-    """Whether a field of type `holds` may be a function of time."""
-    kinds = (holds, *get_args(holds))
-    return any(isinstance(part, VaryingQuantity) for kind in kinds for part in getattr(kind, "__metadata__", ()))
 
 
 def _end(raw: dict) -> float | None:
@@ -193,25 +192,6 @@ def samples_at(tables: Any, table: str) -> dict:
         else:
             tables = tables.get(step) if isinstance(tables, dict) else None
     return tables if isinstance(tables, dict) else {}
-
-
-def held_columns(raw: dict, kind: type, name: str, held: dict, asked) -> dict:
-    """An archive's resolved tables `held` without what the user has `asked` for anew.  Raises ScenarioError where its
-    scenario, the tables `raw`, names a file that the archive does not hold: a stranger's words open none."""
-    over_time = quantities_of_files(raw, kind)
-    for table, known in (PLACES | over_time).items():
-        motion, kept = samples_at(raw, table), samples_at(held, table)
-        steps = f"{table}.file".split(".")
-        first = next(iter(known))
-        if asked & {".".join(steps[:n]) for n in range(1, len(steps) + 1)}:
-            held = _replaced(held, table.split("."), {}) if table in over_time and kept else held
-            continue
-        lacks = first not in kept or (table not in over_time and kept.get("file") != motion["file"])
-        if "file" in motion and first not in motion and lacks:
-            key = f"{table}.file"
-            found = f"{quoted(motion['file'])}, which the archive does not hold"
-            raise ScenarioError(name, key, found, f"--set {key}=FILE, where it is meant")
-    return held
 
 
 def read_motion(path: Path, known=MOTION) -> dict[str, list[float]]:

@@ -1,32 +1,92 @@
-"""Tables before they are read: values set at dotted keys, diameters in place of radii, the version of the keys, and the
-commonest slip, a quantity whose number and unit stand without quotation marks."""
+"""Tables before they are read: how deep, long and many what comes in may be, before anything in it is read or searched;
+values set at dotted keys, and the commonest slip, a quantity whose number and unit stand without quotation marks.
 
-import dataclasses
+Files, `--set`, the scenarios of archives, settings of studies and tables made in Python all pass `refuse_unbounded`;
+behind it a text is one that a terminal can print, a key is a string, an integer one that Python prints, and whatever
+goes down the tables comes to an end.
+"""
+
 import re
 import tomllib
+from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
-from .. import __version__
 from ..answers import toml_line
+from ..scene.scene import SceneError
 from ..scene.variants import ALTERNATIVES
-from ..units import Length, QuantityError, quoted
-from .errors import ScenarioError, diameters, refuse_unbounded, refuse_unreadable, table_in, tables, without_indices
+from ..units import quoted
+from .errors import set_by
 
-# Raised when a key is renamed, goes, or means something else; new keys alone do not raise it.
-SCHEMA = 1
+# Levels of tables and lists, characters of a key and of a string, entries in all (the samples of two motions and their
+# like), and the largest integer.
+DEEPEST, LONGEST_KEY, LONGEST_STRING, MOST_ENTRIES, LARGEST = 20, 200, 10_000, 2_000_000, 10**40
+# Characters of a text, which may hold the samples of motions.
+MOST_CHARACTERS = 1 << 26
+# Dotted keys beyond any table, which a TOML parser goes through once for each of their parts, and digits in a row that
+# no number has: some parsers take the square of their count.
+PART = r"""(?:"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+'|[^\s.=,#\[\]{}"']++)"""
+DEEP_KEY = re.compile(rf"(?<![^\s.=,#\[\]{{}}])(?:{PART}[ \t]*+\.[ \t]*+){{{DEEPEST}}}")
+LONG_NUMBER = re.compile(r"(?<!\d)\d{2000}")
 
 
-def refuse_newer(raw: dict, name: str) -> None:
-    """Raises ScenarioError for the tables of a scenario whose `schema` is above SCHEMA: what else is unknown in it is
-    not wrong, only newer."""
-    found = raw.get("schema")
-    if isinstance(found, int) and found > SCHEMA:
-        expected = f"at most {SCHEMA}, all that sealdyn {__version__} reads: install a newer sealdyn for this file"
-        raise ScenarioError(name, "schema", quoted(found), expected)
+def refuse_unreadable(text: str) -> None:
+    """Raises SceneError for a text that would take a parser long."""
+    if not isinstance(text, str):
+        raise SceneError("", quoted(text), "text")
+    if len(text) > MOST_CHARACTERS:
+        raise SceneError("", f"{len(text)} characters", f"at most {MOST_CHARACTERS}")
+    if surrogate := _surrogate(text):
+        raise SceneError("", f"half a character ({surrogate})", "text in UTF-8")
+    for pattern, what in ((DEEP_KEY, "tables too deep"), (LONG_NUMBER, "a number of thousands of digits")):
+        if place := pattern.search(text):
+            line = text.count("\n", 0, place.start()) + 1
+            raise SceneError("", f"{what} (line {line})", "a scenario file (TOML)")
+
+
+def refuse_unbounded(tree: Any, key: str = "") -> None:
+    """Raises SceneError for tables that are deeper, longer or more than a scenario's, or hold keys that are no strings;
+    `key` is the path to them."""
+    left, entries = [(tree, key, 0)], 0
+    while left:
+        held, path, depth = left.pop()
+        if isinstance(held, np.ndarray):
+            held = held.tolist()
+        if isinstance(held, dict | list | tuple):
+            entries += len(held)
+            if depth >= DEEPEST:
+                raise SceneError(path, "tables too deep", "at most 3 levels")
+            if entries > MOST_ENTRIES:
+                raise SceneError(path, f"more than {MOST_ENTRIES} entries", "fewer")
+        if isinstance(held, dict):
+            for step, below in held.items():
+                if not isinstance(step, str):
+                    raise SceneError(path, f"the key {quoted(step)}", "a string as a key")
+                if len(step) > LONGEST_KEY or _surrogate(step):
+                    expected = f"a key of at most {LONGEST_KEY} characters, in UTF-8"
+                    raise SceneError(path, f"the key {quoted(step)}", expected)
+                left.append((below, f"{path}.{step}" if path else step, depth + 1))
+        elif isinstance(held, list | tuple):
+            # Numbers by the thousand are neither long nor deep.
+            left += [(below, path, depth + 1) for below in held if not isinstance(below, float)]
+        elif isinstance(held, str):
+            if len(held) > LONGEST_STRING:
+                raise SceneError(path, f"a string of {len(held)} characters", f"at most {LONGEST_STRING}")
+            if surrogate := _surrogate(held):
+                raise SceneError(path, f"half a character ({surrogate})", "text in UTF-8")
+        elif isinstance(held, int) and abs(held) > LARGEST:
+            raise SceneError(path, quoted(held, 40), f"a number of at most {LARGEST:.0e} in size")
+
+
+def _surrogate(text: str) -> str:
+    """The half of a character in a text, which no file can hold, as code; "" if there is none."""
+    try:
+        text.encode()
+    except UnicodeEncodeError as error:
+        return f"U+{ord(text[error.start]):04X}"
+    return ""
 
 
 # Characters of a line on which a quantity is looked for.
@@ -70,85 +130,33 @@ def _key(lines: list[str], column: int) -> str:
     return table
 
 
-LENGTH = Length.__metadata__[0]
+def override_key(raw: dict, override: str) -> None:
+    """Set one "key=value" in the tables `raw`: the value is TOML where it can be, else a string.  Raises SceneError."""
+    key, written = key_and_words(override)
+    with set_by(override):
+        set_value(raw, key, value_of(written))
 
 
-@lru_cache(4096)
-def _radii(kind: type, table: str = "") -> dict[str, str]:
-    """{key of a diameter: that of its radius} of a table, by its dotted path, of the dataclass `kind`."""
-    return diameters(tables(kind).get(table, {}))
-
-
-def radius_key(kind: type, key: str) -> str:
-    """The dotted key of the radius, if `key` is that of its diameter; else `key`.  `kind`: the scenario's dataclass."""
-    table, _, last = key.rpartition(".")
-    twin = _radii(kind, without_indices(table)).get(last)
-    return f"{table}.{twin}" if twin else key
-
-
-def with_radii(tree: Any, kind: type, name: str, wrong: list, path: str = "") -> tuple[Any, dict[str, str]]:
-    """The tables `tree` of the dataclass `kind` with every diameter halved under the key of its radius, and which were:
-    {dotted key of the radius: key of the diameter}.  To `wrong` are appended ScenarioErrors, of the scenario `name`,
-    for diameters beside their radius and for those that are no length, which are then any."""
-    halved = {}
-    if isinstance(tree, list):
-        entries = [with_radii(entry, kind, name, wrong, f"{path}.{n}") for n, entry in enumerate(tree)]
-        return [entry for entry, _ in entries], {key: twin for _, found in entries for key, twin in found.items()}
-    if not isinstance(tree, dict):
-        return tree, halved
-    keys, tree = {f.name: f.type for f in dataclasses.fields(kind)}, tree.copy()
-    for key in tree:
-        if inner := table_in(keys.get(key)):
-            tree[key], below = with_radii(tree[key], inner, name, wrong, f"{path}.{key}".strip("."))
-            halved |= below
-    for diameter, radius in _radii(kind).items():
-        if diameter in tree:
-            try:
-                tree[radius] = _half(tree, diameter, radius, f"{path}.{diameter}", name)
-            except ScenarioError as error:
-                wrong.append(error)
-                tree[radius] = 1.0
-            del tree[diameter]
-            halved[f"{path}.{radius}"] = diameter
-    return tree, halved
-
-
-def _half(table: dict, diameter: str, radius: str, key: str, name: str) -> float:
-    if radius in table:
-        raise ScenarioError(name, key, f"{diameter} and {radius}", "one of the two")
-    try:
-        return LENGTH.read(table[diameter]) / 2
-    except QuantityError as error:
-        raise ScenarioError(name, key, error.found, error.expected) from None
-
-
-def override_key(raw: dict, override: str, name: str) -> None:
-    """Set one "key=value" in the tables `raw` of the scenario `name`: the value is TOML where it can be, else a string.
-    Raises ScenarioError."""
-    key, written = key_and_words(override, name)
-    set_value(raw, key, value_of(written), f"{name} (--set {quoted(override)})")
-
-
-def key_and_words(override: str, name: str) -> tuple[str, str]:
-    """Key and value, as it is written, of "key=value".  Raises ScenarioError, of the scenario `name`."""
-    refuse_unreadable(override, name)
+def key_and_words(override: str) -> tuple[str, str]:
+    """Key and value, as it is written, of "key=value".  Raises SceneError."""
+    refuse_unreadable(override)
     key, equals, written = (part.strip() for part in override.partition("="))
-    refuse_unbounded(key.split("."), name)
-    if not key or not equals:
-        name = f"{name} (--set {quoted(override)})"
-        raise ScenarioError(name, "", "no key=value", 'for example rotor.runout="0.2 mrad"')
+    refuse_unbounded(key.split("."))
+    with set_by(override):
+        if not key or not equals:
+            raise SceneError("", "no key=value", 'for example rotor.runout="0.2 mrad"')
     return key, written
 
 
-def set_value(raw: dict, key: str, value: Any, name: str) -> None:
+def set_value(raw: dict, key: str, value: Any) -> None:
     """Set one dotted key of a scenario's tables and take its alternatives away; tables that were read before are
-    opened on the way to the key.  Raises ScenarioError, of the scenario `name`, where the way leads through none."""
+    opened on the way to the key.  Raises SceneError where the way leads through none."""
     *path, last = key.split(".")
     place: Any = raw
     for step in path:
-        place = _entry(place, step, key, name)
+        place = _entry(place, step, key)
     if isinstance(place, list):
-        _entry(place, last, key, name)
+        _entry(place, last, key)
         place[int(last)] = value
         return
     for alternative in ALTERNATIVES.get(last, ()):
@@ -162,16 +170,14 @@ def opened(table: Any) -> dict:
     return {k: list(v) if isinstance(v, tuple) else v for k, v in held.items() if v is not None and v != []}
 
 
-def _entry(place: Any, step: str, key: str, name: str) -> Any:
+def _entry(place: Any, step: str, key: str) -> Any:
     if isinstance(place, list):
         if not step.isdecimal():
             entry = key.replace(f".{step}", f".0.{step}", 1)
             count = f" to {entry.replace('.0.', f'.{len(place) - 1}.', 1)}" if len(place) > 1 else ""
-            raise ScenarioError(
-                name, key, f"a list of {len(place)} at {quoted(step)}", f"its entry too: {entry}{count}"
-            )
+            raise SceneError(key, f"a list of {len(place)} at {quoted(step)}", f"its entry too: {entry}{count}")
         if len(step) > 6 or int(step) >= len(place):
-            raise ScenarioError(name, key, f"entry {quoted(step)}", f"0 to {len(place) - 1}: the file has {len(place)}")
+            raise SceneError(key, f"entry {quoted(step)}", f"0 to {len(place) - 1}: the file has {len(place)}")
         step = int(step)
         below = place[step]
     else:
@@ -181,7 +187,7 @@ def _entry(place: Any, step: str, key: str, name: str) -> Any:
     elif isinstance(below, (dict, list)):
         below = below.copy()
     else:
-        raise ScenarioError(name, key, f"{quoted(below)} at {quoted(str(step))}", "a table there")
+        raise SceneError(key, f"{quoted(below)} at {quoted(str(step))}", "a table there")
     # What was read is never changed: its copy is.
     place[step] = below
     return below
@@ -205,11 +211,19 @@ def value_of(written: str) -> Any:
     return tree["value"] if set(tree) == {"value"} else written
 
 
-def override_of(key: str, value: Any) -> str:
-    """The override "key=value" that sets a value: a string as it stands, anything else (SI) written as TOML."""
-    if isinstance(value, str):
-        return f"{key}={value}"
-    return f"{key}={toml_line(as_written(value))}"
+def overrides_of(values: Mapping[str, Any]) -> list[str]:
+    """The overrides "key=value" that set values at dotted keys: strings as they stand, anything else (SI) written as
+    TOML.  Raises SceneError for what no file can have."""
+    refuse_unbounded(values)
+    overrides = []
+    for key, value in values.items():
+        value = without_arrays(value)
+        try:
+            overrides.append(f"{key}={value if isinstance(value, str) else toml_line(as_written(value))}")
+        except (TypeError, ValueError, RecursionError):
+            expected = "a string, a number, a list or a table"
+            raise SceneError(str(key), quoted(str(value)), expected) from None
+    return overrides
 
 
 def as_written(value: Any) -> Any:

@@ -20,7 +20,9 @@ from ..films import own_film_names
 from ..scene.film import Film
 from ..scene.loads import Load
 from ..scene.rings import Rotor, Stator
-from .errors import ScenarioError, expected_of, table_in
+from ..scene.scene import SceneError
+from .errors import expected_of, refuse
+from .keys import table_in
 
 ROOMS = {Film: "films", Load: "loads"}
 # Keys of their tables; what a file of each room has.
@@ -126,9 +128,10 @@ def options_of(room: str, name: str) -> type | None:
     return kind
 
 
-def with_default_options(file, name: str, wrong: list[ScenarioError]):
-    """The tables of a file with the default options of the models from outside that it names; to `wrong` go options
-    that are needed and not given, and what their `errors()` find."""
+def with_default_options(file):
+    """The tables of a file with the default options of the models from outside that it names.  Raises SceneError for
+    options that are needed and not given, and what their `errors()` find."""
+    wrong = []
     for place, room in OUTSIDE.items():
         ring, _, load = place.rpartition(".")
         table = getattr(getattr(file, ring), load) if ring else file.film
@@ -141,11 +144,12 @@ def with_default_options(file, name: str, wrong: list[ScenarioError]):
             try:
                 options = kind()
             except TypeError:
-                wrong.append(ScenarioError(name, key, "no such table", expected_of(key, kind)))
+                wrong.append(SceneError(key, "no such table", expected_of(key, kind)))
                 continue
             table = dataclasses.replace(table, **{table.model: options})
             held = dataclasses.replace(getattr(file, ring), load=table) if ring else table
             file = dataclasses.replace(file, **{ring or "film": held})
         for below, found, expected in options.errors() if hasattr(options, "errors") else ():
-            wrong.append(ScenarioError(name, f"{key}.{below}", found, expected))
+            wrong.append(SceneError(f"{key}.{below}", found, expected))
+    refuse(wrong)
     return file

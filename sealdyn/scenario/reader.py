@@ -7,7 +7,7 @@ import operator
 import os
 import stat
 import tomllib
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping, Set
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import ModuleType
@@ -22,27 +22,26 @@ from ..scene.application import Application, RadialApplication
 from ..scene.checks import unused
 from ..scene.radial import RadialScene
 from ..scene.rings import INERTIAL, RING_NAMES
-from ..scene.scene import Scene
+from ..scene.scene import Scene, SceneError
 from ..unit_names import spelled_like
 from ..units import is_gauge, quoted
-from .errors import (
-    ScenarioError,
-    refuse_unbounded,
-    refuse_unreadable,
-)
-from .motion_files import PLACES, held_columns, quantities_of_files, samples_at, whole_file
+from .errors import ScenarioError, scene_errors_of, set_by
+from .keys import bare_keys, leaves
+from .motion_files import PLACES, is_asked, quantities_of_files, samples_at, whole_file
 from .overrides import (
     as_written,
     key_and_words,
     opened,
     override_key,
-    override_of,
+    overrides_of,
+    refuse_unbounded,
+    refuse_unreadable,
     set_value,
     unquoted_quantity,
     value_of,
     without_arrays,
 )
-from .tables import Run, given_keys, kind_of, kind_of_scene, read_tables, table_of
+from .tables import Run, kind_of, kind_of_scene, read_tables, table_of
 
 __all__ = [
     "Run",
@@ -125,13 +124,13 @@ class Scenario:
     def from_dict(cls, tables: dict[str, Any], name: str = "scene", question: str = "") -> Self:
         """Scenario of tables as a file has them, {"film": {"clearance": "10 um", ...}, ...}: quantities are strings
         with units or SI numbers.  `question` is put at the head of its text.  Raises ScenarioError."""
-        return parse_scenario(text_of(tables, name, question), name)
+        with scene_errors_of(name):
+            return parse_scenario(text_of(tables, question), name)
 
     def to_dict(self) -> dict[str, Any]:
         """Its tables as they were written, overrides in them: `Scenario.from_dict` makes an equal scenario of them."""
-        raw = _toml(self.text, self.name)
-        for override in self.overrides:
-            override_key(raw, override, self.name)
+        with scene_errors_of(self.name):
+            raw = _tables_of(self.text, self.overrides)
         columns, held = self.motions(), self.resolved()
         for key in (*columns, *quantities_of_files(raw, kind_of_scene(self.scene))):
             # Whole without the file, which is looked for from somewhere else then.
@@ -142,10 +141,10 @@ class Scenario:
 
     def to_toml(self) -> str:
         """Its text as a file has it; with overrides the tables are written anew, below the head of the file."""
-        raw = _toml(self.text, self.name)
-        files = any("file" in motion for motion in self.motions().values())
-        anew = self.overrides or files or quantities_of_files(raw, kind_of_scene(self.scene))
-        return text_of(self.to_dict(), self.name, self.question) if anew else self.text
+        with scene_errors_of(self.name):
+            files = any("file" in motion for motion in self.motions().values())
+            anew = self.overrides or files or quantities_of_files(_tables_of(self.text), kind_of_scene(self.scene))
+            return text_of(self.to_dict(), self.question) if anew else self.text
 
     def motions(self) -> dict[str, dict[str, Any]]:
         """Motions and loads by samples, of "shaft.motion" and the other PLACES: their columns (SI), and the name of
@@ -227,31 +226,32 @@ def _of_archive(path: Path, overrides: Iterable[str]) -> Scenario:
     given = [*map(str, info.get("overrides", [])), *overrides]
     held = info.get("resolved")
     name = str(info.get("name", path.stem))
-    asked = {key_and_words(override, name)[0] for override in overrides}
     held = held if isinstance(held, dict) else {}
-    _same_outside(info.get("outside"), held, asked, name)
+    with scene_errors_of(name):
+        asked = {key_and_words(override)[0] for override in overrides}
+        _same_outside(info.get("outside"), held, asked)
     scenario = parse_scenario(str(info["scenario"]), name, given, held=held, asked=asked)
     foreign = scenario.run.start.endswith(".h5") and not asked & {"run", "run.start"}
     return dataclasses.replace(scenario, foreign_start=scenario.run.start if foreign else "")
 
 
-def _same_outside(made_with: Any, held: dict, asked, name: str) -> None:
-    """Raises ScenarioError where what an archive was made with comes from outside and is gone, or is another; `held`
+def _same_outside(made_with: Any, held: dict, asked: Set[str]) -> None:
+    """Raises SceneError where what an archive was made with comes from outside and is gone, or is another; `held`
     are its resolved tables, of keys that the user has `asked` for others are meant."""
     for place, made in made_with.items() if isinstance(made_with, dict) else ():
         room, _, called = str(place).partition("/")
         for table in (table for table, held_in in OUTSIDE.items() if held_in == room):
-            steps = table.split(".")
-            own = asked & {f"{table}.model", *(".".join(steps[:n]) for n in range(1, len(steps) + 1))}
-            if own or samples_at(held, table).get("model") != called or (today := digest(room, called)) == made:
-                continue
             key, what = f"{table}.model", room.removesuffix("s")
+            if is_asked(key, asked) or samples_at(held, table).get("model") != called:
+                continue
+            if (today := digest(room, called)) == made:
+                continue
             found = f'"{called}", of another source ({today}) than the archive\'s ({made})'
             expected = f"the {what} that the archive was made with, or --set {key}={called}, where today's is meant"
             if today is None:
                 found = f'"{called}", which is neither installed nor on SEALDYN_PATH'
                 expected = f"the {what} that the archive was made with (source {made})"
-            raise ScenarioError(name, key, found, expected)
+            raise SceneError(key, found, expected)
 
 
 def _must_be_readable(path):
@@ -270,31 +270,23 @@ def parse_scenario(
     """Scenario of TOML text; `name` is what errors call it.  Files that it names are looked for beside `path`, or are
     `held`: the resolved tables of an archive, whose words open no others; keys that the user has `asked` for may.
     Raises `ScenarioError`."""
-    raw = _toml(text, name)
-    for override in overrides:
-        override_key(raw, override, name)
-    refuse_unbounded(raw, name)
-    if held is not None:
-        held = held_columns(raw, kind_of(raw, name), name, held, asked)
-    bare = frozenset(_bare_keys(raw))
+    with scene_errors_of(name):
+        raw = _tables_of(text, overrides)
+        refuse_unbounded(raw)
+        found = read_tables(raw, folder=path and path.parent, held=held, asked=asked)
     gauge = frozenset(f"film.{key}" for key, value in table_of(raw, "film").items() if is_gauge(value))
-    unsaid: list[str] = []
-    found = read_tables(raw, name, folder=path and path.parent, held=held, bare=unsaid)
-    name = name.removesuffix(".toml")
-    return Scenario(
-        **found, bare=bare.union(unsaid), gauge=gauge, text=text, name=name, path=path, overrides=list(overrides),
-        question=_question(text),
-    )  # fmt: skip
+    found |= {"text": text, "question": _question(text), "overrides": list(overrides), "gauge": gauge}
+    return Scenario(**found, name=name.removesuffix(".toml"), path=path)
 
 
-def text_of(tables: dict[str, Any], name: str, question: str = "") -> str:
-    """The TOML text of a scenario's tables, with the question as the comment at its head.  Raises ScenarioError."""
-    refuse_unbounded(tables, name)
+def text_of(tables: dict[str, Any], question: str = "") -> str:
+    """The TOML text of a scenario's tables, with the question as the comment at its head.  Raises SceneError."""
+    refuse_unbounded(tables)
     try:
         written = toml_text(without_arrays(tables))
     except (TypeError, ValueError, AttributeError, RecursionError) as error:
         found = f"what TOML cannot hold ({' '.join(str(error).split())[:200] or type(error).__name__})"
-        raise ScenarioError(name, "", found, "tables of strings, numbers and lists") from None
+        raise SceneError("", found, "tables of strings, numbers and lists") from None
     return "".join(f"# {line}".rstrip() + "\n" for line in question.splitlines()) + written
 
 
@@ -305,33 +297,22 @@ def _neighbours(path: Path) -> list[str]:
         return []
 
 
-def _toml(text: str, name: str) -> dict:
-    refuse_unreadable(text, name)
+def _tables_of(text: str, overrides: Iterable[str] = ()) -> dict:
+    """The tables of a scenario's text with its overrides set.  Raises SceneError."""
+    refuse_unreadable(text)
     try:
         raw = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         if bare := unquoted_quantity(text, str(error)):
-            raise ScenarioError(name, *bare) from None
-        raise ScenarioError(name, "", f"no TOML: {error}", 'lines like clearance = "10 um" under [film]') from None
+            raise SceneError(*bare) from None
+        raise SceneError("", f"no TOML: {error}", 'lines like clearance = "10 um" under [film]') from None
     except (ValueError, RecursionError):
-        raise ScenarioError(name, "", "numbers too long or tables too deep", "a scenario file (TOML)") from None
+        raise SceneError("", "numbers too long or tables too deep", "a scenario file (TOML)") from None
     if not raw:
-        raise ScenarioError(name, "", "an empty file", "the tables [shaft], [film], [rotor], [stator]")
+        raise SceneError("", "an empty file", "the tables [shaft], [film], [rotor], [stator]")
+    for override in overrides:
+        override_key(raw, override)
     return raw
-
-
-def _bare_keys(held: Any, key: str = "") -> Iterator[str]:
-    """Dotted keys of what holds numbers other than 0 without a unit; of a quantity over time its own key for its
-    values, and with ".time" for its times."""
-    if isinstance(held, dict):
-        for step, below in held.items():
-            if step != "study" or key:
-                yield from _bare_keys(below, key if step == "value" else f"{key}.{step}".lstrip("."))
-    elif isinstance(held, list) and any(isinstance(entry, dict) for entry in held):
-        for step, below in enumerate(held):
-            yield from _bare_keys(below, f"{key}.{step}")
-    elif any(isinstance(entry, int | float) and entry for entry in (held if isinstance(held, list) else [held])):
-        yield key
 
 
 def _question(text: str) -> str:
@@ -354,48 +335,52 @@ def _plain(value: Any) -> Any:
     return value if value is None or isinstance(value, (bool, int, float, str)) else str(value)
 
 
-def with_values(scenario: Scenario, values: dict[str, Any]) -> Scenario:
+def with_values(scenario: Scenario, values: Mapping[str, Any]) -> Scenario:
     """The scenario with other values at dotted keys, read and checked like a file's; its text is not read again.
 
     `values`: SI numbers, strings as the user writes them ("0.2 mrad", "steady", TOML), `PiecewiseLinear`, tables.
     Raises ScenarioError.
     """
-    refuse_unbounded(values, scenario.name)
-    values = {key: without_arrays(value) for key, value in values.items()}
-    more = [_written(key, value, scenario.name) for key, value in values.items()]
+    with scene_errors_of(scenario.name):
+        overrides = overrides_of(values)
+        tables, given = _opened_tables(scenario, values), set(scenario.given)
+        for (key, value), override in zip(values.items(), overrides, strict=True):
+            value = value_of(value) if isinstance(value, str) else without_arrays(value)
+            with set_by(override):
+                set_value(tables, key, value)
+                kind = kind_of(tables)
+            table, _, last = key.rpartition(".")
+            gone = {key, *(f"{table}.{other}" for other in variants.ALTERNATIVES.get(last, ()))}
+            given = {k for k in given if k not in gone and not k.startswith(f"{key}.")}
+            given.update(k for k, _ in leaves({key: as_written(value)}, kind))
+        told = {key: value_of(value) for key, value in values.items() if isinstance(value, str)}
+        bare = [key for key in scenario.bare if key not in told]
+        bare += [key for step, value in told.items() for key in bare_keys(value, step)]
+        found = read_tables(tables, given, bare, scenario.path and scenario.path.parent)
+    start = "" if {"run", "run.start"} & set(values) else scenario.foreign_start
+    return dataclasses.replace(
+        scenario, **found, overrides=[*scenario.overrides, *overrides], foreign_start=start, read=None
+    )
+
+
+def _opened_tables(scenario: Scenario, values: Mapping[str, Any]) -> dict[str, Any]:
+    """The tables of a scenario that was read, as a file would have them, without what follows from other keys where
+    `values` are set."""
     tables = {name: opened(table) for name, table in opened(scenario.scene).items()}
-    rings = [ring for ring in RING_NAMES if ring in tables]
     tables |= {"run": opened(scenario.run), "study": scenario.study}
     tables |= {"application": opened(scenario.application)} if scenario.application is not None else {}
-    for ring in rings:
+    for ring in (ring for ring in RING_NAMES if ring in tables):
         if body := tables[ring].pop("body", None):
             # A body's mass follows it; where a mass or an inertia is, or was, set, the others stay and the body goes.
             own = dict(zip(INERTIAL, body.inertia(), strict=True))
             if not any(f"{ring}.{key}" in values or tables[ring][key] != own[key] for key in INERTIAL):
                 tables[ring] = {key: held for key, held in tables[ring].items() if key not in INERTIAL} | {"body": body}
-    for ring in rings:
         if load := tables[ring].get("load"):
             made = ("samples",) if load.model is not None else ()
             tables[ring]["load"] = {key: held for key, held in opened(load).items() if key not in made}
     if scenario.reading is not None:
         tables["rotor"]["runout"] = scenario.reading
-    given = set(scenario.given)
-    for (key, value), override in zip(values.items(), more, strict=True):
-        name = f"{scenario.name} (--set {quoted(override)})"
-        value = value_of(value) if isinstance(value, str) else value
-        set_value(tables, key, value, name)
-        table, _, last = key.rpartition(".")
-        gone = {key, *(f"{table}.{other}" for other in variants.ALTERNATIVES.get(last, ()))}
-        given = {k for k in given if k not in gone and not k.startswith(f"{key}.")}
-        given |= {*given_keys({key: as_written(value)}, kind=kind_of(tables, name))}
-    told = {key: value_of(value) for key, value in values.items() if isinstance(value, str)}
-    bare = [key for key in scenario.bare if key not in told]
-    bare += [key for step, value in told.items() for key in _bare_keys(value, step)]
-    found = read_tables(tables, scenario.name, frozenset(given), scenario.path and scenario.path.parent, bare=bare)
-    start = "" if {"run", "run.start"} & set(values) else scenario.foreign_start
-    return dataclasses.replace(
-        scenario, **found, bare=frozenset(bare), overrides=[*scenario.overrides, *more], foreign_start=start, read=None
-    )
+    return tables
 
 
 def scenario_of(source: Scenario | str | os.PathLike, overrides: Mapping[str, Any] | Iterable[str] = ()) -> Scenario:
@@ -404,20 +389,14 @@ def scenario_of(source: Scenario | str | os.PathLike, overrides: Mapping[str, An
     if isinstance(overrides, Mapping):
         if isinstance(source, Scenario):
             return with_values(source, overrides) if overrides else source
-        refuse_unbounded(overrides, str(source))
-        overrides = [_written(key, without_arrays(value), str(source)) for key, value in overrides.items()]
+        with scene_errors_of(str(source)):
+            overrides = overrides_of(overrides)
     overrides = [overrides] if isinstance(overrides, str) else list(overrides)
     if not isinstance(source, Scenario):
         return read_scenario(source, overrides)
+    with scene_errors_of(source.name):
+        pairs = [key_and_words(override) for override in overrides]
     # One after the other: a key may come twice.
-    for key, written in [key_and_words(override, source.name) for override in overrides]:
+    for key, written in pairs:
         source = with_values(source, {key: written})
     return source
-
-
-def _written(key: str, value: Any, name: str) -> str:
-    """The override that sets a value.  Raises ScenarioError, of the scenario `name`, for what no file can have."""
-    try:
-        return override_of(key, value)
-    except (TypeError, ValueError, RecursionError):
-        raise ScenarioError(name, str(key), quoted(str(value)), "a string, a number, a list or a table") from None

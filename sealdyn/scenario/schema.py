@@ -11,7 +11,7 @@ from typing import Any
 from pydantic import TypeAdapter
 
 from ..scene.film import Film
-from .errors import diameters, table_in
+from .keys import diameters, table_in, tables
 from .tables import ScenarioFile, film_choices
 
 
@@ -42,9 +42,7 @@ def table_schema(kind: type) -> dict:
 
 def _add_diameters(table: dict, kind: type) -> None:
     """Beside each radius of a table's schema its diameter: one of the two, or at most one."""
-    twins = {
-        radius: diameter for diameter, radius in diameters({f.name: f.type for f in dataclasses.fields(kind)}).items()
-    }
+    twins = {radius: diameter for diameter, radius in diameters(tables(kind)[""]).items()}
     properties = {}
     for key, holds in table["properties"].items():
         properties[key] = holds

@@ -18,7 +18,8 @@ from ..scene.checks import check_scene
 from ..scene.scene import SceneError
 from ..unit_names import dimension_and_factor
 from ..units import Quantity, quantity_of, quoted
-from .errors import ScenarioError, nearest_of, refuse_unbounded
+from .errors import ScenarioError, nearest_of, scene_errors_of
+from .overrides import refuse_unbounded
 from .reader import Scenario
 from .tables import refuse_extremes
 
@@ -34,27 +35,26 @@ def study_settings(scenario: Scenario, name: str, kind: type, flags: dict[str, A
     """Settings of study `name` (underscored): defaults, overridden by `[study.NAME]`, overridden by flags.
     A flag "a, b, c" of a setting that is a list is read as a list.  Raises ScenarioError for unknown keys or values,
     like any other table."""
-    refuse_unbounded(flags, scenario.name, f"study.{name}")
-    known = [f.name for f in dataclasses.fields(kind)]
-    raw = written_settings(scenario, name, kind, flags)
-    for key in raw:
-        if key not in known:
-            hint = nearest_of(key, known)
-            expected = f"one of {', '.join(known)}{hint}" if known else "no settings"
-            raise ScenarioError(scenario.name, f"study.{name}.{key}", "an unknown key", expected)
-    try:
-        settings = TypeAdapter(kind).validate_python(raw)
-        refuse_extremes(settings, scenario.name, f"study.{name}", MOST)
-        return settings
-    except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        key = ".".join(str(part) for part in first["loc"] if isinstance(part, str) and part in known)
-        context = first.get("ctx", {}).get("error")
-        found = getattr(context, "found", repr(first.get("input")))
-        expected = getattr(context, "expected", first["msg"])
-        raise ScenarioError(scenario.name, f"study.{name}.{key}", found, expected) from None
-    except RecursionError:
-        raise ScenarioError(scenario.name, f"study.{name}", "lists too deep", "values") from None
+    known, table = [f.name for f in dataclasses.fields(kind)], f"study.{name}"
+    with scene_errors_of(scenario.name):
+        refuse_unbounded(flags, table)
+        raw = written_settings(scenario, name, kind, flags)
+        for key in raw:
+            if key not in known:
+                expected = f"one of {', '.join(known)}{nearest_of(key, known)}" if known else "no settings"
+                raise SceneError(f"{table}.{key}", "an unknown key", expected)
+        try:
+            settings = TypeAdapter(kind).validate_python(raw)
+            refuse_extremes(settings, table, MOST)
+            return settings
+        except ValidationError as error:
+            first = error.errors(include_url=False)[0]
+            key = ".".join(str(part) for part in first["loc"] if isinstance(part, str) and part in known)
+            context = first.get("ctx", {}).get("error")
+            found = getattr(context, "found", repr(first.get("input")))
+            raise SceneError(f"{table}.{key}", found, getattr(context, "expected", first["msg"])) from None
+        except RecursionError:
+            raise SceneError(table, "lists too deep", "values") from None
 
 
 def written_settings(scenario: Scenario, name: str, kind: type, flags: dict[str, Any]) -> dict[str, Any]:
@@ -142,10 +142,8 @@ def without(scenario: Scenario, what) -> tuple[Scenario, list[str]]:
     if not names:
         return scenario, []
     scene = variants.without(scenario.scene, what)
-    try:
+    with scene_errors_of(scenario.name):
         check_scene(scene, scenario.run)
-    except SceneError as error:
-        raise ScenarioError(scenario.name, error.key, error.found, error.expected) from None
     return dataclasses.replace(scenario, scene=scene, read=None), names
 
 

@@ -3,7 +3,7 @@
 import dataclasses
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Set
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, TypeAdapter, ValidationError
 
+from .. import __version__
 from ..extensions import OUTSIDE, OutsideError, digest, in_folders, installed
 from ..films import all_film_names, film_of, own_film_names
 from ..numerics.piecewise_linear import PiecewiseLinear
@@ -28,18 +29,16 @@ from ..units import Length, QuantityError, Time, quoted
 from .errors import (
     CIRCUMFERENTIAL_RULES,
     LIP_RULES,
-    ScenarioError,
     explained,
     nearest_of,
-    scene_errors_of,
-    tables,
-    together,
+    refuse,
     unknown_rules,
-    without_indices,
 )
+from .keys import bare_keys, held_at, leaves, radius_key, with_radii
 from .motion_files import samples_at, with_columns
-from .overrides import SCHEMA, radius_key, refuse_newer, with_radii
 
+# Raised when a key is renamed, goes, or means something else; new keys alone do not raise it.
+SCHEMA = 1
 # Numbers in SI units beyond which nothing of this world is.
 SMALLEST, LARGEST = 1e-25, 1e15
 STARTS = r"^(auto|rest|steady|.+\.h5)$"
@@ -105,70 +104,63 @@ class RadialFile(RadialScene):
 
 def read_tables(
     raw: dict,
-    name: str,
-    given: frozenset[str] | None = None,
+    given: Iterable[str] | None = None,
+    bare: Iterable[str] | None = None,
     folder: Path | None = None,
     held: dict | None = None,
-    bare: list[str] | None = None,
+    asked: Set[str] = frozenset(),
 ) -> dict[str, Any]:
-    """What a Scenario holds (`scene`, `run`, `application`, `study`, `given`, `reading`) of tables whose values are
-    written as in a file, or were read before.  `given`: dotted keys that the user wrote, all of the tables' unless
-    told, without those on which no run hangs; `folder`, `held` and `bare` as of motion_files.py.
-    Raises `ScenarioError`."""
-    refuse_newer(raw, name)
-    kind = kind_of(raw, name)
-    wrong = [*_odd_numbers(raw, name, kind=kind)]
-    raw, halved = with_radii(raw, kind, name, wrong)
-    given = given_keys(raw, kind=kind) if given is None else (radius_key(kind, key) for key in given)
+    """What a Scenario holds (`scene`, `run`, `application`, `study`, `given`, `bare`, `reading`) of tables whose values
+    are written as in a file, or were read before.  `given`, `bare`: dotted keys that the user wrote, and of numbers
+    without a unit, those of the tables unless told; `given` without those on which no run hangs.  `folder`, `held`
+    and `asked` as of motion_files.py.  Raises SceneError."""
+    _refuse_newer(raw)
+    kind = kind_of(raw)
+    wrong = [*_odd_numbers(raw, kind)]
+    bare = frozenset(bare_keys(raw) if bare is None else bare)
+    raw, halved = with_radii(raw, kind, wrong)
+    given = (key for key, _ in leaves(raw, kind)) if given is None else (radius_key(kind, key) for key in given)
     given = frozenset(key for key in given if key.partition(".")[0] not in BESIDE_THE_RUN)
-    raw = with_columns(raw, kind, name, folder, held or {}, wrong, [] if bare is None else bare)
-    reading = _total_indicator_reading(raw)
-    _tilt_of_tir(raw)
-    wrong += [*_run_and_study(raw, name)]
+    raw, unread, unsaid = with_columns(raw, kind, folder, held, asked)
+    reading = _tilt_of_tir(raw)
+    wrong += [*unread, *_run_and_study(raw)]
     try:
         file = _reader(kind).validate_python(raw)
     except ValidationError as error:
-        wrong += explained(name, kind, raw, error.errors(include_url=False))
+        wrong += explained(kind, raw, error.errors(include_url=False))
+    # What the values are together is asked where each can be.
+    refuse(wrong)
+    # Powers of the numbers are taken from here on.
+    refuse_extremes(file)
     if kind is RadialFile:
-        return {**_radial(file if not wrong else None, wrong, name), "given": given}
-    if not wrong:
-        # Powers of the numbers are taken from here on.
-        refuse_extremes(file, name)
-        wrong += _bodies(file, raw, name)
-    if wrong:
-        # What the values are together is asked where each can be.
-        raise together(wrong)
-    if kind is not ScenarioFile:
-        from .own_options import with_default_options
-
-        file = with_default_options(file, name, wrong)
-        if wrong:
-            raise together(wrong)
-    file = dataclasses.replace(file, rotor=with_inertia(file.rotor), stator=with_inertia(file.stator))
-    refuse_extremes(file, name)
-    if impossible := _impossible(file):
-        halves = [f"{e.found}, half of {halved[e.key]}" if e.key in halved else e.found for e in impossible]
-        found = zip(impossible, halves, strict=True)
-        raise together([ScenarioError(name, e.key, words, e.expected) for e, words in found])
-    if "run.samples_per_turn" in given and not _turns(file.shaft.speed):
-        raise ScenarioError(name, "run.samples_per_turn", "a shaft at rest", "[run] samples, the number in all")
-    scene = Scene(**{f.name: getattr(file, f.name) for f in dataclasses.fields(Scene)})
-    if any(load is not None and load.model is not None for load in (scene.stator.load, scene.rotor.load)):
+        refuse(_impossible_radially(file))
+    else:
+        refuse(_bodies(file, raw))
+        file = _completed(file, kind)
+        refuse(_impossible(file, halved, given))
+    scene_of = RadialScene if kind is RadialFile else Scene
+    scene = scene_of(**{f.name: getattr(file, f.name) for f in dataclasses.fields(scene_of)})
+    loads = [getattr(getattr(scene, ring, None), "load", None) for ring in RING_NAMES]
+    if any(load is not None and load.model is not None for load in loads):
         # Loaded where there is something to sample.
         from .loads import with_samples
 
-        with scene_errors_of(name):
-            scene = with_samples(scene, file.run)
+        scene = with_samples(scene, file.run)
     parts = {"run": file.run, "application": file.application, "study": file.study}
-    return {"scene": scene, **parts, "given": given, "reading": reading}
+    return {"scene": scene, **parts, "given": given, "bare": bare.union(unsaid), "reading": reading}
 
 
-def kind_of(raw: dict, name: str) -> type:
-    """The dataclass of the tables `raw` of the scenario `name`, with options of what they take from outside.  Raises
-    ScenarioError."""
-    if any(table in raw for table in RADIAL):
-        return RadialFile
-    return _with_options(named_outside(raw, name))
+def _refuse_newer(raw: dict) -> None:
+    """Raises SceneError for a `schema` above SCHEMA: what else is unknown in such tables is not wrong, only newer."""
+    found = raw.get("schema")
+    if isinstance(found, int) and found > SCHEMA:
+        expected = f"at most {SCHEMA}, all that sealdyn {__version__} reads: install a newer sealdyn for this file"
+        raise SceneError("schema", quoted(found), expected)
+
+
+def kind_of(raw: dict) -> type:
+    """The dataclass of the tables `raw`, with options of what they take from outside.  Raises SceneError."""
+    return RadialFile if any(table in raw for table in RADIAL) else _with_options(named_outside(raw))
 
 
 def _with_options(found: tuple[tuple[str, str], ...]) -> type:
@@ -179,10 +171,9 @@ def _with_options(found: tuple[tuple[str, str], ...]) -> type:
     return with_options(ScenarioFile, found)
 
 
-def named_outside(raw: dict, name: str) -> tuple[tuple[str, str], ...]:
-    """What the tables `raw` of the scenario `name` take from outside: ("films/NAME", digest of its source), sorted.
-    Raises ScenarioError for what cannot be read, for a load that is not there, and for a film that is not but has
-    options."""
+def named_outside(raw: dict) -> tuple[tuple[str, str], ...]:
+    """What the tables `raw` take from outside: ("films/NAME", digest of its source), sorted.  Raises SceneError for
+    what cannot be read, for a load that is not there, and for a film that is not but has options."""
     found = set()
     for place, room in OUTSIDE.items():
         table, known = samples_at(raw, place), (Film if room == "films" else Load).__dataclass_fields__
@@ -202,7 +193,7 @@ def named_outside(raw: dict, name: str) -> tuple[tuple[str, str], ...]:
             except OutsideError as error:
                 hint = "" if made else nearest_of(word, {*in_folders(room), *installed(room)})
                 key = f"{place}.{'model' if word == model else word}"
-                raise ScenarioError(name, key, error.found, error.expected + hint) from None
+                raise SceneError(key, error.found, error.expected + hint) from None
             found.add((f"{room}/{word}", made))
     return tuple(sorted(found))
 
@@ -223,48 +214,48 @@ def kind_of_scene(scene: Scene | RadialScene) -> type:
     return RadialFile if isinstance(scene, RadialScene) else _with_options(outside_of(scene))
 
 
-def _radial(file: RadialFile | None, wrong: list[ScenarioError], name: str) -> dict[str, Any]:
-    """What a Scenario of a radial seal holds; raises what is `wrong` with it."""
-    if wrong:
-        raise together(wrong)
-    refuse_extremes(file, name)
-    wrong = [ScenarioError(name, key, found, expected) for key, found, expected in radial_errors(file)]
+def _completed(file: ScenarioFile, kind: type) -> ScenarioFile:
+    """The file with the options and inertias that follow from what it says.  Raises SceneError."""
+    if kind is not ScenarioFile:
+        from .own_options import with_default_options
+
+        file = with_default_options(file)
+    file = dataclasses.replace(file, rotor=with_inertia(file.rotor), stator=with_inertia(file.stator))
+    refuse_extremes(file)
+    return file
+
+
+def _impossible_radially(file: RadialFile) -> list[SceneError]:
+    """What no radial seal can have together."""
+    bad = [SceneError(*error) for error in radial_errors(file)]
     if file.run.start not in ("auto", "steady"):
-        wrong.append(
-            ScenarioError(name, "run.start", quoted(file.run.start), '"auto": a radial seal begins on the shaft')
-        )
+        bad.append(SceneError("run.start", quoted(file.run.start), '"auto": a radial seal begins on the shaft'))
     if file.run.solver in ("ida", "expm", "trbdf2"):
-        found = quoted(file.run.solver)
-        wrong.append(
-            ScenarioError(name, "run.solver", found, 'of a radial seal "auto", "dop853", "radau", "adams" or "bdf"')
-        )
-    if not wrong and file.run.turns is not None and not _turns(file.shaft.speed):
-        wrong.append(ScenarioError(name, "run.turns", "a shaft at rest", "[run] duration and samples"))
+        expected = 'of a radial seal "auto", "dop853", "radau", "adams" or "bdf"'
+        bad.append(SceneError("run.solver", quoted(file.run.solver), expected))
+    if not bad and file.run.turns is not None and not _turns(file.shaft.speed):
+        bad.append(SceneError("run.turns", "a shaft at rest", "[run] duration and samples"))
     if file.application is not None:
         unknown = unknown_rules(file.application.acknowledge, LIP_RULES if file.lip else CIRCUMFERENTIAL_RULES)
-        wrong += [ScenarioError(name, f"application.{key}", found, expected) for key, found, expected in unknown]
-    if wrong:
-        raise together(wrong)
-    scene = RadialScene(**{f.name: getattr(file, f.name) for f in dataclasses.fields(RadialScene)})
-    return {"scene": scene, "run": file.run, "application": file.application, "study": file.study}
+        bad += [SceneError(f"application.{key}", *words) for key, *words in unknown]
+    return bad
 
 
-def _impossible(file: ScenarioFile) -> list[SceneError]:
-    """What no scene can have together, and, where there is nothing of that kind, what its film does not take."""
-    bad = []
-    try:
-        _check_film_name(file.film.model)
-    except SceneError as error:
-        bad.append(error)
-    bad += scene_errors(file, file.run)
+def _impossible(file: ScenarioFile, halved: dict[str, str], given: frozenset[str]) -> list[SceneError]:
+    """What no scene can have together, and, where there is nothing of that kind, what its film does not take, or the
+    run."""
+    bad = [*_unknown_film(file.film.model), *scene_errors(file, file.run)]
     if file.application is not None:
         wrong = application_errors(file.application) + unknown_rules(file.application.acknowledge)
-        bad += [SceneError(f"application.{key}", found, expected) for key, found, expected in wrong]
+        bad += [SceneError(f"application.{key}", *words) for key, *words in wrong]
     try:
         _ = bad or film_of(file)
     except SceneError as error:
         bad.append(error)
-    return bad
+    if not bad and "run.samples_per_turn" in given and not _turns(file.shaft.speed):
+        bad.append(SceneError("run.samples_per_turn", "a shaft at rest", "[run] samples, the number in all"))
+    halves = [f"{e.found}, half of {halved[e.key]}" if e.key in halved else e.found for e in bad]
+    return [SceneError(e.key, found, e.expected) for e, found in zip(bad, halves, strict=True)]
 
 
 def film_choices() -> list[str]:
@@ -272,14 +263,14 @@ def film_choices() -> list[str]:
     return ["auto", *all_film_names()]
 
 
-def _check_film_name(name: str) -> None:
+def _unknown_film(name: str) -> Iterator[SceneError]:
     # What is installed beside this package is asked for other names only: that takes its time.
     if name not in ("auto", *own_film_names()) and name not in film_choices():
         near = [choice for choice in film_choices() if name and choice.startswith(f"{name}_")]
         near = near or spelled_like(name, film_choices())
         expected = "one of " + ", ".join(f'"{m}"' for m in film_choices())
         hint = "; nearest " + " and ".join(f"'{choice}'" for choice in near) if near else ""
-        raise SceneError("film.model", f'"{name[:40]}"', expected + hint)
+        yield SceneError("film.model", f'"{name[:40]}"', expected + hint)
 
 
 @cache
@@ -287,24 +278,22 @@ def _reader(kind: type) -> TypeAdapter:
     return TypeAdapter(kind)
 
 
-def _odd_numbers(tree: Any, name: str, key: str = "", kind: type = ScenarioFile) -> Iterator[ScenarioError]:
+def _odd_numbers(tree: Any, kind: type, key: str = "") -> Iterator[SceneError]:
     """Not a number, infinite, and true or false for a number; a study may hold what it likes."""
     below = tree.items() if isinstance(tree, dict) else enumerate(tree) if isinstance(tree, list) else ()
     for step, value in below:
         path = f"{key}.{step}" if key else str(step)
         if path not in ("study", "application.acknowledge"):
-            yield from _odd_numbers(value, name, path, kind)
+            yield from _odd_numbers(value, kind, path)
     if isinstance(tree, float) and not math.isfinite(tree):
-        yield ScenarioError(name, key, str(tree), "a finite number")
-    if isinstance(tree, bool) and key:
-        table, _, last = without_indices(key).rpartition(".")
-        if tables(kind).get(table, {}).get(last) is not bool:
-            yield ScenarioError(name, key, quoted(tree), "a number or a string with a unit")
+        yield SceneError(key, str(tree), "a finite number")
+    if isinstance(tree, bool) and key and held_at(kind, key) is not bool:
+        yield SceneError(key, quoted(tree), "a number or a string with a unit")
 
 
-def refuse_extremes(value: Any, name: str, key: str = "", counted: float = LARGEST) -> None:
+def refuse_extremes(value: Any, key: str = "", counted: float = LARGEST) -> None:
     """Not a number, infinite, and numbers so large or small that products of a few of them are (in SI); whole numbers
-    are at most `counted`.  Raises ScenarioError that names the key below `key`."""
+    are at most `counted`.  Raises SceneError that names the key below `key`."""
     if isinstance(value, Motion):
         # Of thousands of samples one may cross zero anywhere.
         below = [(k, max(map(abs, held))) for k, held in vars(value).items() if isinstance(held, tuple) and held]
@@ -314,42 +303,25 @@ def refuse_extremes(value: Any, name: str, key: str = "", counted: float = LARGE
         below = enumerate(value) if isinstance(value, (list, tuple)) else ()
     for step, part in below:
         # Of a table, its columns.
-        refuse_extremes(part, name, key if isinstance(step, int) else f"{key}.{step}" if key else step, counted)
+        refuse_extremes(part, key if isinstance(step, int) else f"{key}.{step}" if key else step, counted)
     if isinstance(value, int) and abs(value) > counted:
-        raise ScenarioError(name, key, quoted(value), f"at most {counted:g}")
+        raise SceneError(key, quoted(value), f"at most {counted:g}")
     if isinstance(value, int | float) and value != 0 and not SMALLEST <= abs(value) <= LARGEST:
         found = f"{value:.3g}" if isinstance(value, float) else quoted(value)
-        raise ScenarioError(name, key, f"{found} (SI)", f"0, or a number from {SMALLEST:g} to {LARGEST:g} in size")
+        raise SceneError(key, f"{found} (SI)", f"0, or a number from {SMALLEST:g} to {LARGEST:g} in size")
 
 
-def given_keys(tree: dict, key: str = "", kind: type = ScenarioFile) -> list[str]:
-    """Dotted keys of a scenario's tables (`tree`), down to what is no table; `key` is the path to the tree."""
-    found = []
-    for step, value in tree.items() if isinstance(tree, dict) else enumerate(tree):
-        path = f"{key}.{step}" if key else str(step)
-        is_table = without_indices(path) in tables(kind) and isinstance(value, (dict, list))
-        found += given_keys(value, path, kind) if is_table and path != "study" else [path]
-    return found
-
-
-def _total_indicator_reading(raw: dict) -> Any:
-    """`rotor.runout` as written where any of it is a total indicator reading, "20 um TIR"; else None."""
-    runout = table_of(raw, "rotor").get("runout")
-    return runout if any(map(_reading, entries_of(runout))) else None
-
-
-def _tilt_of_tir(raw: dict) -> None:
-    """`runout = "20 um TIR"`, the total indicator reading at the outer radius, becomes TIR / (2 r_o)."""
+def _tilt_of_tir(raw: dict) -> Any:
+    """`runout = "20 um TIR"`, the total indicator reading at the outer radius, becomes TIR / (2 r_o).  The runout as it
+    was written where any of it is one, else None."""
     rotor, outer = table_of(raw, "rotor"), table_of(raw, "film").get("outer_radius")
     runout = rotor.get("runout")
-    tilts = [_tilt(entry, outer) for entry in entries_of(runout)]
-    if tilts and "runout" in rotor:
-        rotor["runout"] = {**runout, "value": tilts} if isinstance(runout, dict) else tilts[0]
-
-
-def entries_of(runout: Any) -> list:
     entries = runout.get("value") if isinstance(runout, dict) else [runout]
-    return entries if isinstance(entries, list) else []
+    if not isinstance(entries, list) or not any(map(_reading, entries)):
+        return None
+    tilts = [_tilt(entry, outer) for entry in entries]
+    rotor["runout"] = {**runout, "value": tilts} if isinstance(runout, dict) else tilts[0]
+    return runout
 
 
 def _reading(entry: Any) -> re.Match | None:
@@ -371,7 +343,7 @@ def table_of(raw: dict, key: str) -> dict:
     return raw[key] if isinstance(raw.get(key), dict) else {}
 
 
-def _bodies(file: ScenarioFile, raw: dict, name: str) -> Iterator[ScenarioError]:
+def _bodies(file: ScenarioFile, raw: dict) -> Iterator[SceneError]:
     """A ring has a mass, or a body that gives it, or both as `sealdyn check` prints them."""
     for ring in (key for key in RING_NAMES if getattr(file, key).body):
         own, by_body = getattr(file, ring), with_inertia(getattr(file, ring))
@@ -379,23 +351,23 @@ def _bodies(file: ScenarioFile, raw: dict, name: str) -> Iterator[ScenarioError]
             value, follows = getattr(own, key), getattr(by_body, key)
             if key in table_of(raw, ring) and not math.isclose(value, follows, rel_tol=1e-9):
                 expected = f"nothing, or what follows from the body, {follows:g}"
-                yield ScenarioError(name, f"{ring}.{key}", f"{value:g} beside [{ring}.body]", expected)
+                yield SceneError(f"{ring}.{key}", f"{value:g} beside [{ring}.body]", expected)
 
 
-def _run_and_study(raw: dict, name: str) -> Iterator[ScenarioError]:
+def _run_and_study(raw: dict) -> Iterator[SceneError]:
     """What depends on several keys: how long and how often, and that studies are tables."""
     for study, settings in table_of(raw, "study").items():
         if not isinstance(settings, dict):
-            yield ScenarioError(name, f"study.{study}", quoted(settings), "a table [study.NAME] of a study's settings")
+            yield SceneError(f"study.{study}", quoted(settings), "a table [study.NAME] of a study's settings")
     for ring in RING_NAMES:
         load = table_of(table_of(raw, ring), "load")
         if "model" in load and "samples" in load:
-            yield ScenarioError(name, f"{ring}.load.samples", "samples and a model", "one of the two")
+            yield SceneError(f"{ring}.load.samples", "samples and a model", "one of the two")
     raw.setdefault("run", {})
     run = table_of(raw, "run")
     for one, other in (("turns", "duration"), ("samples_per_turn", "samples")):
         if one in run and other in run:
-            yield ScenarioError(name, f"run.{one}", f"{one} and {other}", "one of the two")
+            yield SceneError(f"run.{one}", f"{one} and {other}", "one of the two")
     if "duration" not in run:
         run.setdefault("turns", 60)
 

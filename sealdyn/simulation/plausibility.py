@@ -16,8 +16,7 @@ from ..dynamics.run_state import Caution, Concern
 from ..dynamics.signals import fields, fields_of, samples
 from ..faces.roughness import mean_film_cubed
 from ..numerics.piecewise_linear import initially, points
-from ..scenario.errors import tables, without_indices
-from ..scenario.overrides import radius_key
+from ..scenario.keys import held_at, radius_key, without_indices
 from ..scenario.reader import Scenario
 from ..scenario.tables import kind_of_scene
 from ..scene.contact import HALF_HEIGHT
@@ -325,9 +324,8 @@ def unusual(key: str, values: list[float], known: tuple[Quantity | None, Usual |
 
 def declared(kind: type, key: str) -> tuple[Quantity | None, Usual | None]:
     """The quantity at a dotted key of the dataclass `kind`, None of a pure number; and what is usual of it."""
-    table, _, last = without_indices(key).rpartition(".")
-    holds = tables(kind).get(table, {}).get(last)
-    if holds is None and last == "time":
+    holds = held_at(kind, key)
+    if holds is None and without_indices(key).rpartition(".")[2] == "time":
         # Of a quantity that is a function of time.
         return SECONDS, SECONDS.usual
     return usual_of(holds)

@@ -24,7 +24,8 @@ from ..numerics.parallel import Checkpoint, Results, evaluate, processes
 from ..quantities import in_words, reading_in
 from ..report.text import written_units
 from ..scenario.errors import ScenarioError, nearest_of, scene_errors_of
-from ..scenario.overrides import radius_key, without_arrays
+from ..scenario.keys import radius_key
+from ..scenario.overrides import without_arrays
 from ..scenario.reader import Scenario, scenario_of
 from ..scenario.settings import bare_settings, study_settings, without, written_settings
 from ..scenario.tables import kind_of_scene

@@ -17,7 +17,7 @@ from sealdyn.dynamics.imposed_motion import rest_state
 from sealdyn.dynamics.interface import flow_at_rest
 from sealdyn.faces.geometry import CONTACT_FORCE
 from sealdyn.scenario import errors
-from sealdyn.scenario.errors import tables
+from sealdyn.scenario.keys import tables
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.scenario.tables import ScenarioFile
 from sealdyn.scene.application import Application

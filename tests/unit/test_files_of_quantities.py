@@ -19,7 +19,7 @@ def scenario_in(folder, **tables):
     for table, keys in tables.items():
         held[table] = held.get(table, {}) | keys
     path = folder / "scene.toml"
-    path.write_text(text_of(held, "scene"))
+    path.write_text(text_of(held))
     return path
 
 

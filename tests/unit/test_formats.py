@@ -9,9 +9,9 @@ import pytest
 import sealdyn
 from sealdyn.archive import ArchiveError, ArchiveWriter, is_study, read_info, read_study, write_study
 from sealdyn.archive.run import Series
-from sealdyn.scenario.overrides import SCHEMA
 from sealdyn.scenario.reader import Scenario, ScenarioError, parse_scenario
 from sealdyn.scenario.schema import json_schema
+from sealdyn.scenario.tables import SCHEMA
 from sealdyn.scenario.templates import kinds, template
 
 FMS = template("fms")

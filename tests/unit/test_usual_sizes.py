@@ -9,7 +9,7 @@ from typing import get_type_hints
 import pytest
 
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
-from sealdyn.scenario.errors import is_list, tables
+from sealdyn.scenario.keys import is_list, tables
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.scenario.tables import RadialFile, ScenarioFile
 from sealdyn.scene.radial import RadialScene

@@ -9,7 +9,7 @@ from scenes import fmr, fms
 
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scenario import reader
-from sealdyn.scenario.overrides import override_of
+from sealdyn.scenario.overrides import overrides_of
 from sealdyn.scenario.reader import ScenarioError, parse_scenario
 from sealdyn.scene.checks import scene_errors
 from sealdyn.scene.contact import Contact
@@ -97,7 +97,7 @@ def scenario(*overrides, text=TEXT):
 )
 def test_values_are_those_of_overrides(values):
     changed = reader.with_values(scenario("run.turns=5"), values)
-    written = scenario("run.turns=5", *(override_of(key, value) for key, value in values.items()))
+    written = scenario("run.turns=5", *overrides_of(values))
     assert (changed.scene, changed.run, changed.given) == (written.scene, written.run, written.given)
     assert changed.overrides == written.overrides and changed.text == TEXT
 
@@ -124,7 +124,7 @@ def test_errors_are_those_of_overrides(values):
         TEXT + '\n[[housing.axial]]\nfrequency = "50 Hz"\ndisplacement = "1 um"\n' if "first" in str(values) else TEXT
     )
     with pytest.raises(ScenarioError) as written:
-        scenario(*(override_of(key, value) for key, value in values.items()), text=text)
+        scenario(*overrides_of(values), text=text)
     with pytest.raises(ScenarioError) as changed:
         reader.with_values(replace(scenario(text=text), name="seal.toml"), values)
     assert str(changed.value) == str(written.value)

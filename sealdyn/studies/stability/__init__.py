@@ -18,7 +18,7 @@ from ...dynamics.model import Model
 from ...dynamics.run_state import RunState
 from ...quantities import in_words
 from ...scenario.errors import ScenarioError, nearest_of
-from ...scenario.errors import tables as keys_of_tables
+from ...scenario.keys import tables as keys_of_tables
 from ...scenario.reader import with_values
 from ...scenario.settings import axis
 from ...scenario.tables import kind_of_scene

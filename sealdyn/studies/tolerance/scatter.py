@@ -10,8 +10,8 @@ from scipy.special import ndtr, ndtri
 from scipy.stats import binomtest, norm, qmc, spearmanr, truncnorm, uniform
 
 from ...quantities import everyday
-from ...scenario.errors import ScenarioError, diameters, nearest, nearest_of, tables, without_indices
-from ...scenario.overrides import radius_key
+from ...scenario.errors import ScenarioError, nearest, nearest_of
+from ...scenario.keys import diameters, radius_key, tables, without_indices
 from ...scenario.own_options import with_options
 from ...scenario.tables import outside_of
 from ...scene import variants

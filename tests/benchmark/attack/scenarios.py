@@ -8,7 +8,7 @@ from functools import cache, partial
 from pathlib import Path
 
 from sealdyn.analysis.check import checked
-from sealdyn.scenario.errors import is_list, tables
+from sealdyn.scenario.keys import is_list, tables
 from sealdyn.scenario.reader import Scenario, parse_scenario
 from sealdyn.scenario.tables import RadialFile, ScenarioFile
 from sealdyn.simulation.plausibility import refuse_large, size_of, unit_warnings
