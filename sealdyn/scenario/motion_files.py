@@ -111,7 +111,7 @@ def with_columns(
             columns |= {step: held for step, held in motion.items() if step not in ("file", "titles")}
         else:
             columns = {column: given[column] for column in known if given.get(column) is not None} | motion
-        raw = _replaced(raw, table.split("."), columns)
+        raw = with_part(raw, table, columns)
     return raw, wrong, bare
 
 
@@ -176,22 +176,28 @@ def _cut(file: str, columns: dict, end: float | None) -> dict:
     return {name: (values[first : first + MOST_LISTED], unit) for name, (values, unit) in columns.items()}
 
 
-def _replaced(tables: Any, path: list[str], value: dict) -> Any:
-    """The tables with another value at a path."""
-    step, *rest = path
+def with_part(tables: Any, key: str, value: Any) -> Any:
+    """The tables with another value at a dotted key."""
+    step, _, rest = key.partition(".")
     if isinstance(tables, list):
-        return [_replaced(entry, rest, value) if n == int(step) else entry for n, entry in enumerate(tables)]
-    return {**tables, step: _replaced(tables[step], rest, value) if rest else value}
+        return [with_part(entry, rest, value) if n == int(step) else entry for n, entry in enumerate(tables)]
+    return {**tables, step: with_part(tables[step], rest, value) if rest else value}
 
 
-def samples_at(tables: Any, table: str) -> dict:
-    """The samples at a dotted place of tables of whatever shape; empty without any."""
-    for step in table.split("."):
+def part_at(tables: Any, key: str) -> Any:
+    """What stands at a dotted key of tables of whatever shape, None where there is no such key."""
+    for step in key.split("."):
         if isinstance(tables, list):
             tables = tables[int(step)] if step.isdigit() and int(step) < len(tables) else None
         else:
             tables = tables.get(step) if isinstance(tables, dict) else None
-    return tables if isinstance(tables, dict) else {}
+    return tables
+
+
+def samples_at(tables: Any, table: str) -> dict:
+    """The samples at a dotted place of tables; empty without any."""
+    found = part_at(tables, table)
+    return found if isinstance(found, dict) else {}
 
 
 def read_motion(path: Path, known=MOTION) -> dict[str, list[float]]:

@@ -130,13 +130,6 @@ def _key(lines: list[str], column: int) -> str:
     return table
 
 
-def override_key(raw: dict, override: str) -> None:
-    """Set one "key=value" in the tables `raw`: the value is TOML where it can be, else a string.  Raises SceneError."""
-    key, written = key_and_words(override)
-    with set_by(override):
-        set_value(raw, key, value_of(written))
-
-
 def key_and_words(override: str) -> tuple[str, str]:
     """Key and value, as it is written, of "key=value".  Raises SceneError."""
     refuse_unreadable(override)

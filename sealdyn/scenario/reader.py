@@ -2,8 +2,6 @@
 end here, in one line each."""
 
 import dataclasses
-import functools
-import operator
 import os
 import stat
 import tomllib
@@ -27,12 +25,11 @@ from ..unit_names import spelled_like
 from ..units import is_gauge, quoted
 from .errors import ScenarioError, scene_errors_of, set_by
 from .keys import bare_keys, leaves
-from .motion_files import PLACES, is_asked, quantities_of_files, samples_at, whole_file
+from .motion_files import PLACES, is_asked, part_at, quantities_of_files, samples_at, whole_file, with_part
 from .overrides import (
     as_written,
     key_and_words,
     opened,
-    override_key,
     overrides_of,
     refuse_unbounded,
     refuse_unreadable,
@@ -134,9 +131,7 @@ class Scenario:
         columns, held = self.motions(), self.resolved()
         for key in (*columns, *quantities_of_files(raw, kind_of_scene(self.scene))):
             # Whole without the file, which is looked for from somewhere else then.
-            *path, last = (int(step) if step.isdigit() else step for step in key.split("."))
-            of_scene = functools.reduce(operator.getitem, path, held)[last]
-            functools.reduce(operator.getitem, path, raw)[last] = columns.get(key, of_scene)
+            raw = with_part(raw, key, columns.get(key, part_at(held, key)))
         return raw
 
     def to_toml(self) -> str:
@@ -311,7 +306,9 @@ def _tables_of(text: str, overrides: Iterable[str] = ()) -> dict:
     if not raw:
         raise SceneError("", "an empty file", "the tables [shaft], [film], [rotor], [stator]")
     for override in overrides:
-        override_key(raw, override)
+        key, written = key_and_words(override)
+        with set_by(override):
+            set_value(raw, key, value_of(written))
     return raw
 
 

@@ -177,8 +177,9 @@ def named_outside(raw: dict) -> tuple[tuple[str, str], ...]:
     found = set()
     for place, room in OUTSIDE.items():
         table, known = samples_at(raw, place), (Film if room == "films" else Load).__dataclass_fields__
+        options = [key for key, held in table.items() if isinstance(held, dict) or dataclasses.is_dataclass(held)]
         model = table.get("model")
-        for word in [model, *(key for key in table if key not in known and key != model and _is_table(table[key]))]:
+        for word in [model, *(key for key in options if key not in known)]:
             if not isinstance(word, str) or (room == "films" and word in (*own_film_names(), "auto")):
                 continue
             made = digest(room, word)
@@ -196,10 +197,6 @@ def named_outside(raw: dict) -> tuple[tuple[str, str], ...]:
                 raise SceneError(key, error.found, error.expected + hint) from None
             found.add((f"{room}/{word}", made))
     return tuple(sorted(found))
-
-
-def _is_table(value: Any) -> bool:
-    return isinstance(value, dict) or dataclasses.is_dataclass(value)
 
 
 def outside_of(scene: Scene | RadialScene) -> tuple[tuple[str, str], ...]:
