@@ -193,12 +193,12 @@ def liquid_of(film) -> Liquid | Water | None:
     return LIQUIDS[film.liquid] if isinstance(film.liquid, str) else film.liquid
 
 
-def in_numbers(film, rise: float = 0.0):
+def in_numbers(film, rise: float = 0.0, **changes):
     """The `Film` table with the numbers of its liquid at `film.temperature` and a `rise` (K) above it, in place of the
-    liquid; itself, if it has none."""
+    liquid, and other `changes`; itself, if it has neither."""
     liquid = liquid_of(film)
     if liquid is None:
-        return film
+        return replace(film, **changes) if changes else film
     at = initially(film.temperature) + rise
     return replace(
         film,
@@ -207,6 +207,7 @@ def in_numbers(film, rise: float = 0.0):
         density=float(liquid.density_at(at)),
         specific_heat=float(liquid.specific_heat_at(at)),
         vapour_pressure=liquid.vapour_pressure_at(at),
+        **changes,
     )
 
 

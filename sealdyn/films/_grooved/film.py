@@ -102,6 +102,8 @@ STATUS = {
 PULLED = 1e-3
 # Radii and angles to the pitch at which pressures are shown.
 SHOWN_RADII, SHOWN_ANGLES = 25, 12
+# Least share of a corner at which a point is in this triangle and no other.
+INSIDE = 1e-9
 # Share of the clearance within which the opening force is that of the clearance itself, not read between others.
 NEAR = 0.01
 
@@ -311,6 +313,8 @@ def fields(f, s, x, out):
                     value += share * p[int(k + row[SHIFTS + b]) % sectors, int(row[CORNERS + b])]
                 if least > best:
                     best, out[0, n, m] = least, value
+                if least > INSIDE:
+                    break
 
 
 # --- the steady film -----------------------------------------------------------------------------------
