@@ -7,18 +7,17 @@ from collections.abc import Callable
 from pathlib import Path
 from time import monotonic
 
-from ..closed_form.stability import couette_reynolds
+from ..closed_form.tilting_ring import couette_reynolds
 from ..films import film_named, film_names, film_of
 from ..kernel_cache import compiling, kept_kernels, kernel_folder
 from ..radial_seals.followers import closed_form_sentences
 from ..scenario.errors import ScenarioError
 from ..scenario.reader import Scenario, read_scenario, with_values
 from ..scenario.templates import shipped_paths
-from ..scene.gas import highest_density
+from ..scene.fluid import highest_density
 from ..scene.patterns import faces_tilt, grooves_of, waves_of
 from ..scene.radial import RadialScene
-from ..scene.scene import SceneError
-from ..scene.variants import frozen_at_start
+from ..scene.scene import SceneError, frozen_at_start
 from ..simulation.batch import simulate_many
 from ..simulation.film_error import reynolds_comparison
 from ..simulation.heat import heat_cautions, heat_of

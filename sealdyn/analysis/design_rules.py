@@ -14,7 +14,7 @@ from ..dynamics.model import Model
 from ..numerics.piecewise_linear import initially, points
 from ..scenario.reader import Scenario
 from ..scene.application import Application
-from ..scene.gas import viscosity_of
+from ..scene.fluid import viscosity_of
 from ..scene.patterns import HIGHEST_ORDER
 from .gas_rules import OF_GAS
 from .seal_figures import (

@@ -8,7 +8,7 @@ is choked.
 from ..dynamics.imposed_motion import rest_state
 from ..dynamics.model import Model
 from ..scene.patterns import grooves_of
-from ..scene.variants import frozen_at_start
+from ..scene.scene import frozen_at_start
 from .film_matrices import State, matrices
 from .seal_figures import Finding, Rule, Seal, Verdict, limit_finding, note, other_seals
 

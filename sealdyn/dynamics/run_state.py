@@ -6,9 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..faces.film_thickness import h_min
+from ..faces.film_thickness import h_min, highest_orders
 from ..faces.geometry import COLLAPSE
-from ..faces.waviness import highest_orders
 from ..scene.contact import film_in_words, limit_in_words
 from ..scene.scene import SceneError
 from ..scene.sweep import end
@@ -71,7 +70,7 @@ class RunState:
         self.stick_slip = StickSlip(model) if model.unknowns.coulomb_rings else None
         if model.unknowns.elastic_rings:
             # Loaded only where a seal gives.
-            from .elastic_seal import Reversals
+            from .secondary_seal import Reversals
 
             self.stick_slip = Reversals(model)
         remark = model.interface.film.remark

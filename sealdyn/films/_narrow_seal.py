@@ -32,7 +32,7 @@ from ..faces.geometry import (
     regularised_thickness,
 )
 from ..numerics.kernel import inner_kernel
-from ..scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE
+from ..scene.fluid import NORMAL_PRESSURE, NORMAL_TEMPERATURE
 
 FLOW_ANGLES = 64
 

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from ..dynamics.extrema import H, empty_records
-from ..dynamics.from_outside import CARRIERS, KINDS, Held, imposed_on
+from ..dynamics.imposed_motion import CARRIERS, KINDS, Held, imposed_on
 from ..dynamics.intervals import LONGEST, Interval, angle_turned
 from ..dynamics.run_state import RunState
 from ..dynamics.signals import samples, series_of, signal_table

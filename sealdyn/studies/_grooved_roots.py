@@ -20,8 +20,7 @@ from ..numerics.piecewise_linear import initially
 from ..quantities import in_words
 from ..scene.contact import touch_height
 from ..scene.film import aligned_gaps, coned
-from ..scene.scene import Closing, Scene, SceneError
-from ..scene.variants import frozen_at_start, refuse_uneven
+from ..scene.scene import Closing, Scene, SceneError, frozen_at_start, refuse_uneven
 from ..simulation.stability import FASTEST
 
 # Speeds between two of which one has more roots that grow.

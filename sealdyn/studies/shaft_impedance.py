@@ -7,12 +7,11 @@ import numpy as np
 
 from ..answers import Answer, Axis, Level, Panel, Series, Table
 from ..dynamics.model import Model
-from ..dynamics.shaft_impedance import at_shaft
+from ..dynamics.modes import at_shaft
 from ..quantities import in_words
 from ..scenario.errors import ScenarioError
 from ..scenario.settings import values_in_si
-from ..scene.scene import SceneError
-from ..scene.variants import arrangement, frozen_at_start
+from ..scene.scene import SceneError, arrangement, frozen_at_start
 from . import Info
 from .coefficients import DAMPING_UNITS, ELEMENTS, FORCES, ORDER, STIFFNESS_UNITS
 

@@ -18,8 +18,7 @@ from ..dynamics.warm_state import at_work
 from ..quantities import in_words
 from ..scene.contact import HALF_HEIGHT
 from ..scene.film import MOST_AROUND
-from ..scene.scene import Scene, SceneError
-from ..scene.variants import frozen_at_start
+from ..scene.scene import Scene, SceneError, frozen_at_start
 from ..units import BendingStiffness, Length, VolumeFlow
 from . import Info
 

@@ -20,7 +20,7 @@ from sealdyn.films._grooved.balance import Conditions, NoSteadyFilm, extrapolate
 from sealdyn.films._grooved.mesh import mesh_of
 from sealdyn.films._grooved.motion import Motion, circle_impedance
 from sealdyn.scene.film import Film, Pads
-from sealdyn.scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE, GasReynolds
+from sealdyn.scene.fluid import NORMAL_PRESSURE, NORMAL_TEMPERATURE, GasReynolds
 from sealdyn.scene.patterns import Grooves
 
 PLAIN = replace(SPIRAL, depth=0.0)

@@ -24,7 +24,7 @@ from sealdyn.scenario.templates import shipped_paths
 from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import Shaft
 from sealdyn.scene.film import Pads, Reynolds
-from sealdyn.scene.gas import gas_of
+from sealdyn.scene.fluid import gas_of
 from sealdyn.scene.patterns import Waviness
 from sealdyn.scene.rings import Rotor
 from sealdyn.scene.scene import Initial, RingStart, Scene

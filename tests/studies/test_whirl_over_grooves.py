@@ -16,8 +16,7 @@ from sealdyn.scene.excitation import Shaft
 from sealdyn.scene.film import Film
 from sealdyn.scene.patterns import Grooves
 from sealdyn.scene.rings import Rotor, Stator, Support
-from sealdyn.scene.scene import Scene
-from sealdyn.scene.variants import frozen_at_start
+from sealdyn.scene.scene import Scene, frozen_at_start
 from sealdyn.studies import _grooved_roots
 from sealdyn.studies._grooved_roots import RootsOverSpeed, modes
 from sealdyn.studies.transmissibility.arrangements import SEALS, Arrangement

@@ -39,8 +39,8 @@ from sealdyn.simulation.selection import Plan, Start, select_film
 from sealdyn.simulation.simulate import simulate, simulate_in_memory
 from sealdyn.simulation.verification_run import Comparison, ProgressSink, sharper
 from sealdyn.solvers.contract import TIGHTEST, Counts, Recorder, tolerance_for
-from sealdyn.solvers.global_error import GlobalErrorEstimate
 from sealdyn.solvers.integrate import solve
+from sealdyn.solvers.run_error import GlobalErrorEstimate
 
 TURN = 2 * math.pi / SPEED
 

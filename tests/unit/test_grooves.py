@@ -21,11 +21,10 @@ from sealdyn.scene.checks import scene_errors, unused
 from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import Shaft
 from sealdyn.scene.film import Film
-from sealdyn.scene.gas import GasReynolds
+from sealdyn.scene.fluid import GasReynolds
 from sealdyn.scene.patterns import Grooves
 from sealdyn.scene.rings import Rotor, Stator, Support
-from sealdyn.scene.scene import Closing, Scene, SceneError
-from sealdyn.scene.variants import counterpart, frozen_at_start
+from sealdyn.scene.scene import Closing, Scene, SceneError, counterpart, frozen_at_start
 from sealdyn.studies import stribeck
 from sealdyn.studies._grooved import flows_over_grooves, tracking
 from sealdyn.studies._grooved_roots import RootsOverSpeed, modes, rings_of

@@ -42,7 +42,7 @@ from ...faces.geometry import (
 )
 from ...numerics.kernel import inner_kernel, outer_kernel, value_kernel
 from ...numerics.piecewise_linear import initially
-from ...scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE, viscosity_of
+from ...scene.fluid import NORMAL_PRESSURE, NORMAL_TEMPERATURE, viscosity_of
 from .._contract import PRESSURE, Film
 from .aligned import MET, OpeningForce
 from .balance import ARRIVED, LEAST, MOST_STEPS, PERMUTATION

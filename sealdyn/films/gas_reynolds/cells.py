@@ -12,7 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from ...faces.film_thickness import film_thickness
+from ...faces.film_thickness import film_thickness, waves, waves_rate
 from ...faces.geometry import (
     CLEARANCE,
     CONING_CHANGE,
@@ -30,11 +30,10 @@ from ...faces.geometry import (
     face_parameters,
     regularised_thickness,
 )
-from ...faces.waviness import waves, waves_rate
 from ...numerics.kernel import inner_kernel
 from ...numerics.piecewise_linear import points
 from ...scene.film import depth_of
-from ...scene.gas import GasReynolds, gas_of
+from ...scene.fluid import GasReynolds, gas_of
 
 # Block after the faces: cells over the radius, angles, scale of an unknown (Pa m), what slip adds to the flow at a
 # temperature of 1 K (m/s, 0 without), and the steps of differences around the circle: 2 sin(d_theta) of a slope,

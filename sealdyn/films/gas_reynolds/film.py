@@ -13,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.sparse import csc_array
 
+from ...faces.film_thickness import lay_waves
 from ...faces.geometry import (
     CAVITATED,
     FLOW_INNER,
@@ -29,10 +30,9 @@ from ...faces.geometry import (
     TORQUE,
     VISCOSITY,
 )
-from ...faces.waviness import lay_waves
 from ...numerics.kernel import inner_kernel, outer_kernel, value_kernel
 from ...numerics.piecewise_linear import initially
-from ...scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE, GasReynolds, viscosity_of
+from ...scene.fluid import NORMAL_PRESSURE, NORMAL_TEMPERATURE, GasReynolds, viscosity_of
 from .._contract import PRESSURE, Film, FilmUnknowns, force_over_clearance
 from . import OFFER
 from .balance import UNSOLVED, between, jacobian, pressures, radial_ways, residual, start

@@ -8,7 +8,7 @@ forcing in the forcing's own frame, against the sense of the shaft's rotation; 0
 Three independent methods: formula, harmonic balance, and the equations of motion in time.
 At the scenario's speed also Green's groups, the coning of the stiffest film, and the inertia ratio of a floating rotor.
 **Source** Green (1989), Fig. 8 and Table 1; the phases are the arguments of the same quotients; FMSR, of which he only
-expects that it is better than both, closed_form/response.py.
+expects that it is better than both, closed_form/tilting_ring.py.
 """
 
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ from ...scene.contact import touch_height
 from ...scene.film import aligned_gaps, coning_change
 from ...scene.patterns import grooves_of
 from ...scene.rings import SMALL_TILT
-from ...scene.variants import arrangement, frozen_at_start
+from ...scene.scene import arrangement, frozen_at_start
 from ...simulation.stability import held_speeds
 from ...units import Speed
 from .. import Info

@@ -18,10 +18,16 @@ from ...dynamics.signals import signals
 from ...quantities import in_words
 from ...scene.excitation import Housing
 from ...scene.film import Coefficients, aligned_gaps, coned, coning_change
-from ...scene.gas import viscosity_of
+from ...scene.fluid import viscosity_of
 from ...scene.rings import RING_NAMES, ROTOR, STATOR
-from ...scene.scene import Initial, Scene
-from ...scene.variants import frozen_at_start, refuse_uneven, with_both_flexible_rings, with_single_flexible_ring
+from ...scene.scene import (
+    Initial,
+    Scene,
+    frozen_at_start,
+    refuse_uneven,
+    with_both_flexible_rings,
+    with_single_flexible_ring,
+)
 from ...simulation.selection import choose_method
 from ...simulation.stability import critical_speed
 from ...solvers.contract import Recorder, Status
@@ -72,7 +78,7 @@ class Arrangement:
         """The same by the quotients of Green (1989) whose amplitudes `closed_form` gives, of two floating rings by
         fmsr_relative_tilts; complex, shape (2, n), at speeds (n,) (rad/s).
 
-        **Source**, **Valid** closed_form/response.py, closed_form/response.py.
+        **Source**, **Valid** closed_form/tilting_ring.py.
         """
         if self.name == "fmsr":
             rotor, stator = map(tilting, (self.scene.rotor, self.scene.stator))

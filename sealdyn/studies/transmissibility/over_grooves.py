@@ -6,8 +6,7 @@ from itertools import pairwise
 import numpy as np
 
 from ...films._grooved.motion import relative_tilt, support_law
-from ...scene.scene import Scene
-from ...scene.variants import frozen_at_start
+from ...scene.scene import Scene, frozen_at_start
 from .._grooved_roots import FilmOverSpeed, RootsOverSpeed, rings_of
 from .arrangements import SEALS, Arrangement, quiet
 

@@ -27,8 +27,7 @@ from ...scene.contact import touch_height
 from ...scene.excitation import AngularVibration, AxialVibration, Housing
 from ...scene.patterns import waves_of
 from ...scene.rings import STATOR
-from ...scene.scene import Initial, Scene, SceneError
-from ...scene.variants import frozen_at_start, unforced
+from ...scene.scene import Initial, Scene, SceneError, frozen_at_start, unforced
 from ...simulation.margin import steady_extremes
 from ...simulation.selection import choose_method
 from ...simulation.verification_run import price

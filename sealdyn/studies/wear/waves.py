@@ -37,8 +37,7 @@ from ...numerics.piecewise_linear import initially
 from ...scene.contact import HALF_HEIGHT
 from ...scene.film import Profile, aligned_gaps, coned
 from ...scene.patterns import HIGHEST_ORDER, MOST_WAVES
-from ...scene.scene import Closing, SceneError
-from ...scene.variants import frozen_at_start
+from ...scene.scene import Closing, SceneError, frozen_at_start
 from ...status import Status
 from .averages import supports_of
 from .rosenbrock import Average, HatBasis, NoAverage

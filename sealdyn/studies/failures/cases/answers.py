@@ -17,7 +17,7 @@ from ....quantities import everyday, in_words
 from ....scene.contact import Contact
 from ....scene.excitation import Shaft
 from ....scene.film import Film
-from ....scene.gas import GasReynolds
+from ....scene.fluid import GasReynolds
 from ....scene.rings import ElasticRing, Stator, Support
 from ....scene.scene import Closing, Initial, RingStart, Scene, SceneError
 from ....simulation.film_error import steady_tilt

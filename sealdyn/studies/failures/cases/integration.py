@@ -14,8 +14,8 @@ from ....dynamics.signals import signals
 from ....numerics.piecewise_linear import PiecewiseLinear
 from ....quantities import in_words
 from ....scene.contact import Contact, contact_thresholds
+from ....scene.ring_forces import SecondarySeal
 from ....scene.rings import RING_NAMES, AxialRunout, Rotor, Stator
-from ....scene.secondary_seal import SecondarySeal
 from ....simulation.selection import choose_method
 from ....simulation.stability import critical_speed
 from ....solvers.contract import Counts, SolverFailure, Status
