@@ -6,11 +6,11 @@ result.data                                          # xarray Dataset
 result.plot.overview()                               # matplotlib Figure
 """
 
-from . import first_moments
+from .numerics import interruption
 
-if first_moments.is_the_program():
+if interruption.is_the_program():
     # Before anything slow is imported.
-    first_moments.hear()
+    interruption.hear()
 
 from importlib import import_module
 from typing import TYPE_CHECKING

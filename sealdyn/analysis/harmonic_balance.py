@@ -22,7 +22,7 @@ from ..dynamics.run_state import RunState
 from ..faces.film_thickness import h_min
 from ..faces.geometry import COLLAPSE, GX, GY
 from ..scene.scene import SceneError
-from ..solvers.collocation import RADAU, rule
+from ..solvers.own_methods import RADAU, rule
 from .shooting import CLOSED, NoOrbit, Orbit, TooMuchWork, must_be_open, periodic
 
 # Harmonics of the fastest forcing to begin with; points of a period at most; share of the last harmonics that must

@@ -8,7 +8,7 @@ both rings (k = stator, rotor; W_k the spin of the carrier; sg = +1 stator, -1 r
                 - K_s e - dK exp(2 i (phi_k + a)) conj(e) + M_mass,   e = gamma - gamma_c - gamma_own
 
 dK of a support with two tilt stiffnesses, whose axes, at `a`, turn with the carrier (phi_k); M_mass the moment of a
-centre of mass off the axis, of unbalance and weight, and of a load from outside (scene/ring_forces.py), as F_load is.
+centre of mass off the axis, of unbalance and weight, and of a load from outside (scene/forces.py), as F_load is.
 Offset faces: faces/geometry.py.
 **Valid** small tilts (1e-4 rad: exact to 1e-8); a changing speed drops -i J W' gamma.
 Contact of the faces adds to F_film and M_film; friction of a secondary seal (dynamics/secondary_seal.py) acts on

@@ -31,11 +31,10 @@ from ..faces.geometry import (
 )
 from ..numerics.kernel import inner_kernel, outer_kernel
 from ..numerics.piecewise_linear import PiecewiseLinear, initially, points
-from ..scene.contact import contact_thresholds, finish
 from ..scene.excitation import MOTION_COLUMNS
 from ..scene.film import aligned_gaps, coning_change
 from ..scene.fluid import viscosity_of
-from ..scene.ring_forces import load_of
+from ..scene.forces import contact_thresholds, finish, load_of
 from ..scene.rings import RING_NAMES, ROTOR, STATOR
 from ..units import Displacement, Force, Moment, Pressure, Quantity, Speed, Tilt
 from .intervals import Interval, constant_and_slope, modulo_turn, spins

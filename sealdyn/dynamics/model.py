@@ -9,7 +9,7 @@ import numpy as np
 from ..faces.geometry import FACE_SIZE
 from ..numerics.piecewise_linear import PiecewiseLinear, initially
 from ..scene.film import aligned_gaps, coning_change
-from ..scene.ring_forces import load_of
+from ..scene.forces import load_of
 from ..scene.rings import RING_NAMES
 from ..scene.scene import Scene, SceneError
 from . import equations, linearisation, modes

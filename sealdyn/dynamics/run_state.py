@@ -8,7 +8,7 @@ import numpy as np
 
 from ..faces.film_thickness import h_min, highest_orders
 from ..faces.geometry import COLLAPSE
-from ..scene.contact import film_in_words, limit_in_words
+from ..scene.forces import film_in_words, limit_in_words
 from ..scene.scene import SceneError
 from ..scene.sweep import end
 from .contact_events import ContactEvents

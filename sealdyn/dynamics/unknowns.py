@@ -7,8 +7,8 @@ import numpy as np
 from ..faces.geometry import offset_block
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene.film import follows_speed
+from ..scene.forces import load_of, pulls
 from ..scene.patterns import alike_sectors, face_orders, faces_tilt, waves_of
-from ..scene.ring_forces import load_of, pulls
 from ..scene.rings import RING_NAMES, ROTOR, STATOR
 from ..scene.scene import turning_supports
 from ..scene.sweep import largest_amplitude, tilts

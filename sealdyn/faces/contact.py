@@ -26,8 +26,8 @@ from functools import lru_cache
 import numpy as np
 
 from ..numerics.kernel import inner_kernel, outer_kernel, value_kernel
-from ..scene.contact import HALF_HEIGHT as HALF
-from ..scene.contact import Contact, contact_thresholds, finish, plateau_height
+from ..scene.forces import HALF_HEIGHT as HALF
+from ..scene.forces import Contact, contact_thresholds, finish, plateau_height
 from ..scene.patterns import land_shares
 from .film_thickness import lay_waves, waves
 from .geometry import (

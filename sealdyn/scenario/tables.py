@@ -19,8 +19,8 @@ from ..scene.application import Application, RadialApplication, application_erro
 from ..scene.checks import scene_errors
 from ..scene.excitation import Motion
 from ..scene.film import Film
+from ..scene.forces import Load
 from ..scene.radial import RADIAL, RadialScene, radial_errors
-from ..scene.ring_forces import Load
 from ..scene.rings import INERTIAL, RING_NAMES, with_inertia
 from ..scene.scene import Scene, SceneError
 from ..unit_names import spelled_like

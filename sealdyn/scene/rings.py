@@ -30,8 +30,8 @@ from ..units import (
 )
 from . import Strict
 from .fluid import ThermalConductivity
+from .forces import Load, SecondarySeal
 from .patterns import Grooves, Waviness
-from .ring_forces import Load, SecondarySeal
 
 Expansion = Annotated[float, Quantity("thermal expansion", "1/K", '"4.5e-6 1/K"', (), 0, True,
     usual=Usual(1e-7, 1e-3, "um/(m*K)"))]  # fmt: skip

@@ -14,10 +14,9 @@ from ..numerics.piecewise_linear import PiecewiseLinear, points
 from ..status import Status
 from ..units import Force, Height, Share, Tilt, TiltRate, Varying, Velocity, cut
 from . import Strict
-from .contact import Contact
 from .excitation import ACCELERATIONS, MOTION_COLUMNS, Housing, Shaft
 from .film import Film
-from .ring_forces import LOAD_COLUMNS, standing
+from .forces import LOAD_COLUMNS, Contact, standing
 from .rings import INERTIAL, RING_NAMES, Rotor, Stator, stuck_support, with_inertia
 from .tabulated import COLUMNS
 

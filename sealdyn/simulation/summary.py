@@ -14,8 +14,8 @@ from ..dynamics.run_state import Caution, Concern
 from ..faces.geometry import TOUCH
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene.fluid import NORMAL_PRESSURE, NORMAL_TEMPERATURE, density_of, gas_of
+from ..scene.forces import load_of
 from ..scene.radial import RadialScene
-from ..scene.ring_forces import load_of
 from ..scene.rings import RING_NAMES, ROTOR, STATOR
 from ..scene.scene import uneven_supports
 from ..solvers.contract import Status

@@ -21,7 +21,7 @@ from ..scenario.reader import with_values
 from ..scenario.settings import must_be_number, si_unit
 from ..scene import scene as scenes
 from ..scene.checks import unused
-from ..scene.contact import touch_height
+from ..scene.forces import touch_height
 from ..scene.rings import SMALL_TILT
 from ..scene.scene import SceneError
 from ..simulation.margin import NoOnset, limit_of_forcing, linear_films, linear_onset, times_own, touching_when_aligned

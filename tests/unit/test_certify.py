@@ -28,8 +28,8 @@ from scenes import (
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scenario.reader import read_scenario
 from sealdyn.scenario.tables import Run
-from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import AngularVibration, Housing
+from sealdyn.scene.forces import Contact
 from sealdyn.scene.rings import Stator
 from sealdyn.simulation import certificate, verification_run
 from sealdyn.simulation import film_error as film_comparison

@@ -18,10 +18,10 @@ from sealdyn.films._grooved.aligned import aligned_film, extrapolated_force
 from sealdyn.films._grooved.motion import tilt_law, unstable_roots
 from sealdyn.report.text import resolved_lines
 from sealdyn.scene.checks import scene_errors, unused
-from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import Shaft
 from sealdyn.scene.film import Film
 from sealdyn.scene.fluid import GasReynolds
+from sealdyn.scene.forces import Contact
 from sealdyn.scene.patterns import Grooves
 from sealdyn.scene.rings import Rotor, Stator, Support
 from sealdyn.scene.scene import Closing, Scene, SceneError, counterpart, frozen_at_start

@@ -17,7 +17,7 @@ from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scenario.reader import ScenarioError, parse_scenario, read_scenario
 from sealdyn.scene.excitation import Shaft
 from sealdyn.scene.film import Coefficients
-from sealdyn.scene.ring_forces import Load, LoadSamples, LoadTone, SecondarySeal
+from sealdyn.scene.forces import Load, LoadSamples, LoadTone, SecondarySeal
 from sealdyn.scene.scene import SceneError, frozen_at, unforced
 
 FMS = (Path(__file__).parents[2] / "scenarios" / "fms_reference.toml").read_text()

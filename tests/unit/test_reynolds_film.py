@@ -35,8 +35,8 @@ from sealdyn.faces.geometry import (
 from sealdyn.films import film_named
 from sealdyn.films.reynolds import film as reynolds
 from sealdyn.films.reynolds import mesh as means
-from sealdyn.scene.contact import Contact
 from sealdyn.scene.film import Film, Reynolds
+from sealdyn.scene.forces import Contact
 from sealdyn.scene.patterns import Waviness
 
 SPIN, VISCOUS = 300.0, 1e-3

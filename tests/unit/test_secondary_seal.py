@@ -12,7 +12,7 @@ from scenes import fms, ring
 
 from sealdyn.analysis.poincare_map import PeriodMap
 from sealdyn.dynamics.secondary_seal import excess, sliding
-from sealdyn.scene.ring_forces import SecondarySeal, secondary_seal_errors
+from sealdyn.scene.forces import SecondarySeal, secondary_seal_errors
 from sealdyn.scene.rings import Stator
 from sealdyn.scene.scene import SceneError
 

@@ -30,9 +30,9 @@ from sealdyn.report.charts import film as film_chart
 from sealdyn.report.charts.record import Run
 from sealdyn.scenario.reader import ScenarioError, parse_scenario
 from sealdyn.scenario.schema import json_schema
-from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import Shaft, Whirl
 from sealdyn.scene.film import Profile
+from sealdyn.scene.forces import Contact
 from sealdyn.scene.patterns import Waviness
 from sealdyn.scene.rings import Rotor, Stator
 from sealdyn.scene.scene import SceneError

@@ -13,9 +13,9 @@ from functools import cached_property
 
 from ...faces.pattern import Box, Boxes, Dimples, Pattern, Spiral, pumps, tee
 from ...numerics.piecewise_linear import initially
-from ...scene.contact import contact_thresholds
 from ...scene.film import coned
 from ...scene.fluid import GasReynolds, gas_of, viscosity_of
+from ...scene.forces import contact_thresholds
 from ...scene.patterns import Grooves, grooves_of
 from ...scene.scene import SceneError
 from .balance import COLUMNS, Conditions, NoSteadyFilm, Steady, extrapolated, order, steady

@@ -18,8 +18,8 @@ from ...dynamics.linearisation import moves_with_speed
 from ...dynamics.model import Model
 from ...scenario.errors import ScenarioError
 from ...scenario.reader import with_values
-from ...scene.contact import HALF_HEIGHT
 from ...scene.film import coning_varies
+from ...scene.forces import HALF_HEIGHT
 from ...scene.scene import SceneError, frozen_at_start, refuse_uneven
 
 INERTIA_RATIO = "inertia_ratio"

@@ -22,8 +22,8 @@ from ... import closed_form as cf
 from ...answers import Answer, Axis, Level, Panel, Series, Table
 from ...dynamics.linearisation import moves_with_speed
 from ...quantities import in_words, reading_in
-from ...scene.contact import touch_height
 from ...scene.film import aligned_gaps, coning_change
+from ...scene.forces import touch_height
 from ...scene.patterns import grooves_of
 from ...scene.rings import SMALL_TILT
 from ...scene.scene import arrangement, frozen_at_start

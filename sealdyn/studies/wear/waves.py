@@ -34,8 +34,8 @@ from ...faces.geometry import (
 from ...faces.roughness import contact_fraction
 from ...films import film_of
 from ...numerics.piecewise_linear import initially
-from ...scene.contact import HALF_HEIGHT
 from ...scene.film import Profile, aligned_gaps, coned
+from ...scene.forces import HALF_HEIGHT
 from ...scene.patterns import HIGHEST_ORDER, MOST_WAVES
 from ...scene.scene import Closing, SceneError, frozen_at_start
 from ...status import Status

@@ -33,7 +33,7 @@ from ....films.reynolds.mesh import AREA, SECTORS, films, table
 from ....quantities import in_words
 from ....scene.film import Film
 from ....scene.fluid import GasReynolds, gas_of
-from ....solvers.special_segments import D, W
+from ....solvers.own_methods import D, W
 from . import row
 
 # --- choked gas ---

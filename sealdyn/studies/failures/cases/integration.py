@@ -13,8 +13,7 @@ from ....dynamics.run_state import RunState
 from ....dynamics.signals import signals
 from ....numerics.piecewise_linear import PiecewiseLinear
 from ....quantities import in_words
-from ....scene.contact import Contact, contact_thresholds
-from ....scene.ring_forces import SecondarySeal
+from ....scene.forces import Contact, SecondarySeal, contact_thresholds
 from ....scene.rings import RING_NAMES, AxialRunout, Rotor, Stator
 from ....simulation.selection import choose_method
 from ....simulation.stability import critical_speed
