@@ -11,7 +11,6 @@ from ..faces.geometry import COLLAPSE
 from ..scene.forces import film_in_words, limit_in_words
 from ..scene.scene import SceneError
 from ..scene.sweep import end
-from .contact_events import ContactEvents
 from .equilibrium import pulled_apart
 from .extrema import ExtremaTracker
 from .imposed_motion import harmonics_of_segment
@@ -20,6 +19,7 @@ from .model import Model
 from .segments import Segment
 from .stick_slip import StickSlip
 from .swept_motion import fastest_sweep, splines, sweeps_of, sweeps_of_segment
+from .tally import ContactEvents
 
 
 class Concern(StrEnum):

@@ -98,14 +98,14 @@ class Scenario:
         object.__setattr__(self, "read", now)
 
     def __repr__(self) -> str:
-        from ..report.notebook import shortened
+        from ..report.in_python import shortened
         from ..report.text import question_of
 
         keys = [line for line in self.to_toml().splitlines() if line.strip() and not line.startswith("#")]
         return shortened([f"Scenario {self.name}: {' '.join(question_of(self.question).split())}", *keys])
 
     def _repr_html_(self) -> str:
-        from ..report.notebook import keys_html
+        from ..report.in_python import keys_html
 
         return keys_html(self.to_dict(), f"{self.name}: {self.question}")
 

@@ -123,7 +123,7 @@ class Simulation:
         return f"Simulation {self.name}: {self.method}, t = {self.time:g} s, h_min = {state['h_min']:.4g} m"
 
     def _repr_html_(self) -> str:
-        from ..report.notebook import html_table
+        from ..report.in_python import html_table
 
         units, state = self.units, self.state
         rows = [(name, f"{value:.6g}", units[name]) for name, value in state.items()]

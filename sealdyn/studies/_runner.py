@@ -302,12 +302,12 @@ class Answer:
         return answer_as_dataset(self.answer, info.units, info.along)
 
     def __repr__(self) -> str:
-        from ..report.notebook import study_repr
+        from ..report.in_python import study_repr
 
         return study_repr(self.study, self.answer)
 
     def _repr_html_(self) -> str:
-        from ..report.notebook import study_html
+        from ..report.in_python import study_html
 
         return study_html(self.answer)
 

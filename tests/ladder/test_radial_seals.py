@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from sealdyn.analysis import seal_types
+from sealdyn.analysis import other_rules
 from sealdyn.radial_seals.equations import _dips, _first_below
 from sealdyn.radial_seals.followers import (
     fastest,
@@ -348,12 +348,12 @@ def test_a_lip_has_no_flange_that_could_hold_it():
 
 def test_the_guides_lip_table_is_no_mass_on_a_spring():
     """1/e = 2.86 + 0.2 v^2 per mm (v in 1000 ft/min): P = e (m w^2 - k) would ask for k < 0."""
-    thousands = seal_types.LIP_SPEED / (1000 * seal_types.FOOT_PER_MINUTE)
-    slope, start = np.polyfit(thousands**2, 1e-3 / seal_types.LIP_ECCENTRICITY, 1)
+    thousands = other_rules.LIP_SPEED / (1000 * other_rules.FOOT_PER_MINUTE)
+    slope, start = np.polyfit(thousands**2, 1e-3 / other_rules.LIP_ECCENTRICITY, 1)
     assert start == pytest.approx(2.86, abs=0.01) and slope == pytest.approx(0.19, abs=0.01)
     # Of segments all rows together would have a stiffness, the four slower ones none.
-    speeds, inverse = seal_types.SEGMENT_SPEED, 1e-3 / (0.5 * seal_types.SEGMENT_RUNOUT)
+    speeds, inverse = other_rules.SEGMENT_SPEED, 1e-3 / (0.5 * other_rules.SEGMENT_RUNOUT)
     assert np.polyfit(speeds**2, inverse, 1)[1] < 0 < np.polyfit(speeds[1:] ** 2, inverse[1:], 1)[1]
-    for table in (seal_types.LIP_SPEED[np.argsort(seal_types.LIP_ECCENTRICITY)],
-                  speeds[np.argsort(seal_types.SEGMENT_RUNOUT)]):  # fmt: skip
+    for table in (other_rules.LIP_SPEED[np.argsort(other_rules.LIP_ECCENTRICITY)],
+                  speeds[np.argsort(other_rules.SEGMENT_RUNOUT)]):  # fmt: skip
         assert np.all(np.diff(table) < 0)

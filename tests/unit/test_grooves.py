@@ -10,7 +10,7 @@ from command import SCENARIOS
 from grooved_faces import AREA, R_I, R_O, ROWS, SEAL_TOML
 
 from sealdyn import read_scenario, run_study
-from sealdyn.analysis.check import checked
+from sealdyn.analysis.desk import checked
 from sealdyn.dynamics.equilibrium import settle
 from sealdyn.dynamics.interface import Interface, opening_law
 from sealdyn.films import film_of

@@ -9,7 +9,10 @@ import pytest
 from scenes import CLEARANCE, NOTHING, R_I, R_O, SPEED, film, fmr, fms, prepared, ring, run, started
 
 import sealdyn
-from sealdyn.dynamics.contact_events import (
+from sealdyn.dynamics.extrema import H_TAU, H_THETA, MOST_SCAN, PER_RADIAN, H
+from sealdyn.dynamics.model import Model
+from sealdyn.dynamics.native import thinnest_value
+from sealdyn.dynamics.tally import (
     DEEPEST,
     DEPTH_H,
     DEPTH_THETA,
@@ -19,9 +22,6 @@ from sealdyn.dynamics.contact_events import (
     TOUCHED,
     locate_contacts,
 )
-from sealdyn.dynamics.extrema import H_TAU, H_THETA, MOST_SCAN, PER_RADIAN, H
-from sealdyn.dynamics.model import Model
-from sealdyn.dynamics.native import thinnest_value
 from sealdyn.faces import geometry as G
 from sealdyn.faces.film_thickness import film_thickness, h_min, lay_waves, wave_parts_along, waves_rate
 from sealdyn.films import all_film_names, film_named, linear

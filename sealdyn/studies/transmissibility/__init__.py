@@ -39,6 +39,7 @@ from .arrangements import (
     phases_apart,
     points_in_time,
     seals_of,
+    seals_over_grooves,
 )
 from .choices import UNITS, choice_tables, choices
 
@@ -156,12 +157,7 @@ def run(scenario, settings, tools) -> Answer:
 
 
 def _seals(scene, grooved: bool) -> dict[str, Arrangement]:
-    if not grooved:
-        return seals_of(scene)
-    # Sparse matrices are loaded for grooves only.
-    from .over_grooves import seals_over_grooves
-
-    return dict(seals_over_grooves(scene))
+    return dict(seals_over_grooves(scene)) if grooved else seals_of(scene)
 
 
 # --- which is best ------------------------------------------------------------------------------------
