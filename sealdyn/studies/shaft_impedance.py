@@ -1,5 +1,7 @@
 """What the shaft feels of the seal: stiffness and damping of film, floating rings and supports in series, over the
-frequency, as a rotor model takes them; and in Python as tables over the speed for rotor models of other programs.
+frequency, as a rotor model takes them.
+
+`shaft_table` and `dyrobes_table` give it in Python over the speed, for rotor models of other programs.
 """
 
 import os
