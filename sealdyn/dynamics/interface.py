@@ -365,12 +365,6 @@ def _known(stiffness, damping, error) -> Slopes:
     return Slopes(stiffness, damping, error * np.abs(stiffness), error * np.abs(damping))
 
 
-def linearised_film(wrench, f, scene, clearance, interval=None, mean_spin=None, shift=0.0, pace=None):
-    """Stiffness and damping matrices (3, 3) of a film's `wrench(f, s)` about `rest_state`."""
-    s, steps = rest_state(scene, clearance, interval, mean_spin, shift, pace)
-    return linearise(wrench, f, s, steps)
-
-
 # --- Cells ---------------------------------------------------------------------------------------------
 
 # How many cells a film needs: doubled until the balance of the aligned seal hardly changes.

@@ -40,7 +40,7 @@ from ..faces.geometry import (
 from ..films import film_of
 from ..numerics.piecewise_linear import initially, shifted
 from ..scene.film import coned
-from ..scene.liquid import in_numbers, liquid_of
+from ..scene.fluid import in_numbers, liquid_of
 from ..scene.patterns import grooves_of, waves_of
 from ..scene.scene import Closing, SceneError
 from ..status import Status

@@ -26,9 +26,10 @@ from functools import lru_cache
 import numpy as np
 
 from ..numerics.kernel import inner_kernel, outer_kernel, value_kernel
-from ..scene.contact import HALF_HEIGHT as HALF
-from ..scene.contact import Contact, contact_thresholds, finish, plateau_height
+from ..scene.forces import HALF_HEIGHT as HALF
+from ..scene.forces import Contact, contact_thresholds, finish, plateau_height
 from ..scene.patterns import land_shares
+from .film_thickness import lay_waves, waves
 from .geometry import (
     COLLAPSE,
     CONING_CHANGE,
@@ -85,7 +86,6 @@ from .roughness import (
     stored,
     touching_radius,
 )
-from .waviness import lay_waves, waves
 
 # Gauss points of a panel around the circle: error below 1e-10 of the load (tests/convergence).
 ANGLE_POINTS = {"christensen": 12, "greenwood-williamson": 20, "plateaus": 12}

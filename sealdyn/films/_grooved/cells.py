@@ -40,7 +40,7 @@ from ...numerics.kernel import inner_kernel
 from ...numerics.piecewise_linear import points
 from ...scene.film import Film as Table
 from ...scene.film import Reynolds
-from ...scene.gas import GasReynolds, gas_of
+from ...scene.fluid import GasReynolds, gas_of
 from ...scene.patterns import Grooves, alike_sectors, grooves_of
 from ...scene.scene import SceneError
 from .._contract import FilmUnknowns
