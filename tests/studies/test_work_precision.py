@@ -281,10 +281,11 @@ def test_film_and_rings_in_turn_are_of_first_order():
     assert left[-1] < 1.5e-3
 
 
-@pytest.mark.parametrize("tolerance", [9.0, 0.3, 0.1])
+@pytest.mark.parametrize("tolerance", [9.0, 0.07])
 def test_film_and_rings_in_turn_fail_where_the_step_is_too_long(tolerance):
-    """They diverge, and there are no errors to show; IDA passes at any of these."""
-    seal = scenario("gas_reynolds_reference", *SMALL_GAS)
+    """They diverge, and there are no errors to show.  At 0.07, a quarter of the fastest period and just beyond their
+    limit, the run would else end well, 0.7 of a clearance off."""
+    seal = scenario("gas_reynolds_reference", *SMALL_GAS[:2], "run.turns=3")
     found = observation.observe(study.ready(seal), REFERENCE_METHODS["segregated"], "segregated", tolerance, samples=40)
     assert found.status == "failed" and found.reason
     assert not any(observation.errors(found, found).values())
