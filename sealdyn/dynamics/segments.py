@@ -177,17 +177,18 @@ class Segment:
 
     # --- what solvers ask ---------------------------------------------------------------------------
 
-    def jacobian(self, tau, y, yp, jac):
-        """d y'/d y (size, size) by forward differences over the mechanical unknowns; works feed nothing back."""
-        base, moved = np.empty(self.size), y.copy()
-        self.rhs(tau, y, base)
+    def jacobian(self, tau, y, yp, jac, rhs=None):
+        """d y'/d y (size, size) by forward differences over the mechanical unknowns; works feed nothing back.  `rhs`:
+        another right-hand side than the segment's own."""
+        rhs, base, moved = rhs or self.rhs, np.empty(self.size), y.copy()
+        rhs(tau, y, base)
         jac[:, :] = 0.0
         column = np.empty(self.size)
         for j in range(self.n_mechanical):
             scale = self.differences[j]
             step = -scale if scale < 0.0 else 1e-7 * max(abs(y[j]), scale)
             moved[j] = y[j] + step
-            self.rhs(tau, moved, column)
+            rhs(tau, moved, column)
             jac[:, j] = (column - base) / step
             moved[j] = y[j]
 
