@@ -89,9 +89,11 @@ class Scene(Strict):
 
 
 class SceneError(ValueError):
-    """A scene that cannot exist: the key to blame, what was found, what is expected, and the `status` of its run."""
+    """A scene that cannot exist: the key to blame, what was found, what is expected, and the `status` of its run;
+    `others`: what else is wrong with the same tables."""
 
     status = Status.INVALID
+    others: "tuple[SceneError, ...]" = ()
 
     def __init__(self, key: str, found: str, expected: str):
         super().__init__(key, found, expected)
