@@ -8,6 +8,7 @@ from scipy.sparse import csc_array
 
 from ..faces import contact
 from ..faces.film_thickness import h_min
+from ..faces.geometry import FORCE
 from ..numerics.kernel import call_load, call_settle, inner_kernel, outer_kernel
 from ..solvers.contract import SolverFailure
 from . import coupled_native, equations
@@ -157,8 +158,10 @@ class CoupledSegment(Segment):
 
     def _bind(self):
         """The equations are functions of this segment's own (coupled_native.py)."""
-        # How often the film was settled.
+        # How often the film was settled, or its residual evaluated on the way there.
         self.settled = 0
+        # Factors of the film's own rows, after the alpha that they hold for.
+        self._film_factors: tuple = (0.0, None)
 
     @cached_property
     def native(self):
@@ -332,6 +335,52 @@ class CoupledSegment(Segment):
                 equations.kinematics(tau, model.vector(at, rate), rates, self.p, self.w, self.s)
                 film.between(model.f, self.s, own)
         return x
+
+    # --- film and rings in turn ---------------------------------------------------------------------
+
+    def film_step(self, tau, alpha, y, small) -> np.ndarray:
+        """Force (N) and moments (N m) of the film (3,) after a step of implicit Euler to segment time `tau` (s) with
+        the rings given: its unknowns in `y` (size,) become those whose rates are `alpha` (1/s) times their change, to
+        `small` of their scales.  Raises SolverFailure where there are none."""
+        film, f, x = self.model.interface.film, self.model.f, y[self.film]
+        equations.kinematics(tau, y, np.zeros(self.size), self.p, self.w, self.s)
+        if film.settle is None:
+            self._solve_film(tau, alpha, y, small)
+        else:
+            self.settled += 1
+            if code := film.settle(f, self.s, alpha, x.copy(), x):
+                raise SolverFailure(film.status[code])
+        film.wrench(f, self.s, x)
+        return self.s[FORCE : FORCE + 3].copy()
+
+    def _solve_film(self, tau, alpha, y, small):
+        """Newton on the film's rows, with factors that are kept over steps until convergence is slow."""
+        x, yp, res, before = y[self.film], np.zeros(self.size), np.empty(self.size), math.inf
+        base = x.copy()
+        for _ in range(MOST):
+            yp[self.film] = alpha * (x - base) * self._stores
+            self.residual(tau, y, yp, res)
+            self.settled += 1
+            if self._film_factors[0] != alpha:
+                own = self._matrix(tau, y, yp, alpha, 1.0)[self.film, self.film]
+                self._film_factors, before = (alpha, factored(own)), math.inf
+            change = self._film_factors[1].solve(res[self.film])
+            x -= change
+            size = float(np.max(np.abs(change) / self.scales[self.film]))
+            if size <= small or (size < before < math.inf and size * size <= small * (before - size)):
+                return
+            if not size <= SLOW * before:
+                self._film_factors = 0.0, None
+            before = size
+        raise SolverFailure("the film's pressures do not converge in the gap that it is given")
+
+    def rates_under(self, load, tau, y, yp):
+        """Rates of rings and works into `yp` (size,) where the film presses with the `load` (3,) of `film_step`."""
+        equations.kinematics(tau, y, yp, self.p, self.w, self.s)
+        self.s[FORCE : FORCE + 3] = load
+        if self.model.contact is not None:
+            contact.contact_load_and_friction(self.model.contact, self.model.f, self.s)
+        equations.rates(tau, y, self.p, self.w, self.s, yp)
 
     # --- stored steps -------------------------------------------------------------------------------
 

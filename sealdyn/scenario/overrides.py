@@ -15,8 +15,7 @@ from typing import Any
 import numpy as np
 
 from ..answers import toml_line
-from ..scene.scene import SceneError
-from ..scene.variants import ALTERNATIVES
+from ..scene.scene import ALTERNATIVES, SceneError
 from ..units import quoted
 from .errors import set_by
 

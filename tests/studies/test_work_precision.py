@@ -262,6 +262,35 @@ def test_a_film_that_stores_is_judged_by_a_library_on_its_rates(tmp_path):
     assert 5.0 < of_euler[0] / of_euler[-1] < 500.0
 
 
+SMALL_GAS = ("film.gas_reynolds.cells=[6, 12]", "run.start=rest", "run.turns=0.25")
+
+
+def test_film_and_rings_in_turn_are_of_first_order():
+    """Steps of 1/10, 1/32 and 1/100 of the fastest period, against IDA far below; measured 1.0."""
+    seal = scenario("gas_reynolds_reference", *SMALL_GAS)
+    exact = observation.observe(study.ready(seal), REFERENCE_METHODS["ida"], "ida", 1e-8, samples=40)
+    steps, left = np.array([1e-1, 10**-1.5, 1e-2]), []
+    for step in steps:
+        found = observation.observe(
+            study.ready(seal), REFERENCE_METHODS["segregated"], "segregated", step**2, samples=40
+        )
+        assert found.status == "ok" and found.counts.rhs > found.counts.steps > 0
+        left.append(observation.worst(observation.errors(found, exact))["over_time"])
+    assert np.polyfit(np.log(steps), np.log(left), 1)[0] == pytest.approx(1.0, abs=0.2)
+    # Measured 5e-4: of first order, but small.
+    assert left[-1] < 1.5e-3
+
+
+@pytest.mark.parametrize("tolerance", [9.0, 0.07])
+def test_film_and_rings_in_turn_fail_where_the_step_is_too_long(tolerance):
+    """They diverge, and there are no errors to show.  At 0.07, a quarter of the fastest period and just beyond their
+    limit, the run would else end well, 0.7 of a clearance off."""
+    seal = scenario("gas_reynolds_reference", *SMALL_GAS[:2], "run.turns=3")
+    found = observation.observe(study.ready(seal), REFERENCE_METHODS["segregated"], "segregated", tolerance, samples=40)
+    assert found.status == "failed" and found.reason
+    assert not any(observation.errors(found, found).values())
+
+
 def test_the_rates_of_a_film_that_stores():
     """Those with which its residual is zero, and their derivatives as differences have them."""
     segment = study.ready(scenario("gas_reynolds_reference", "film.gas_reynolds.cells=[4, 8]")).segment(0)
@@ -287,8 +316,10 @@ def test_a_film_with_cavities_is_judged_by_its_method_and_by_more_cells(tmp_path
     flags = {"tolerances": 4, "loosest": 1e-2, "tightest": 1e-5}
     answer = run_study("work-precision", seal, tmp_path / "w.h5", flags={**FEW, **flags})
     # The library does not pass where cells tear; what needs rates is not even tried.
-    assert list(answer["methods"]) == ["ida", "trbdf2", "ida2", "ida1"]
+    assert list(answer["methods"]) == ["ida", "trbdf2", "ida2", "ida1", "segregated"]
     assert "ok" not in answer["methods"]["ida"]["status"]
+    # A liquid's squeeze film is far too stiff for a light ring that answers a step later.
+    assert set(answer["methods"]["segregated"]["status"]) == {"failed"}
     row = answer["methods"]["trbdf2"]
     # At the judge's own tolerance, 1e-5, it would be found without an error.
     assert row["tolerance"] == pytest.approx([1e-2, 1e-3, 1e-4])

@@ -20,8 +20,8 @@ from ...scene.scene import SceneError
 from ...simulation.film_error import reynolds_comparison
 from ...simulation.result import libraries
 from ...simulation.selection import check_method, choose_method, prepare_run
-from ...solvers.collocation import collocation
 from ...solvers.fixed_step import REFERENCE_METHODS
+from ...solvers.own_methods import collocation
 from ...status import Status
 from .. import Info
 from . import film_ladder
@@ -33,6 +33,7 @@ NAMES = {
     "generalised_alpha": "generalised-alpha", "midpoint": "implicit midpoint", "expm": "matrix exponential",
     "gauss": "Gauss collocation of order 12", "radau_nodes": "Radau collocation of order 9",
     "trbdf2": "TR-BDF2", "scipy_bdf": "SciPy BDF", "ida1": "IDA order 1 (implicit Euler)", "ida2": "IDA order 2",
+    "segregated": "segregated film and rings",
 }  # fmt: skip
 INFO = Info(
     timed=("fmr_reference", 33),
@@ -46,8 +47,9 @@ INFO = Info(
 )  # fmt: skip
 FAST = ("adams", "bdf", "ida", "dop853", "lsoda", "expm", "trbdf2")
 SLOW = ("rk45", "radau", "bdf2", "newmark", "generalised_alpha", "midpoint")
-# Of films with unknowns beside IDA: it at low orders, and SciPy on the rates where every unknown has one.
-OF_FILMS = ("scipy_bdf", "ida2", "ida1")
+# Of films with unknowns beside IDA: it at low orders, and SciPy on the rates where every unknown has one; film and
+# rings in turn.
+OF_FILMS = ("scipy_bdf", "ida2", "ida1", "segregated")
 ON_RATES = ("scipy_bdf", "radau", "dop853", "rk45")
 LATER = (*SLOW, *OF_FILMS)
 Method = Literal[*FAST, *LATER]
