@@ -6,11 +6,11 @@ result.data                                          # xarray Dataset
 result.plot.overview()                               # matplotlib Figure
 """
 
-from . import first_moments
+from .numerics import interruption
 
-if first_moments.is_the_program():
+if interruption.is_the_program():
     # Before anything slow is imported.
-    first_moments.hear()
+    interruption.hear()
 
 from importlib import import_module
 from typing import TYPE_CHECKING
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from .studies._asked import study
     from .studies._declared import list_studies, schema
     from .studies._runner import Answer, run_study
-    from .studies._shaft_table import dyrobes_table, shaft_table
+    from .studies.shaft_impedance import dyrobes_table, shaft_table
 
 __version__ = "0.1.0"
 __all__ = [
@@ -80,7 +80,7 @@ _PLACES = {
     "simulation.stepping": ("Simulation",),
     "studies._declared": ("list_studies", "schema"),
     "studies._runner": ("Answer", "run_study", "study"),
-    "studies._shaft_table": ("dyrobes_table", "shaft_table"),
+    "studies.shaft_impedance": ("dyrobes_table", "shaft_table"),
 }
 
 

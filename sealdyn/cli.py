@@ -214,7 +214,7 @@ def _check_resumable(out, scenario):
 @app.command()
 def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
     """Read a scenario, say what is wrong with it or print it resolved to SI."""
-    from .analysis.check import checked
+    from .analysis.desk import checked
     from .archive import ArchiveError
     from .report.text import resolved_lines
     from .scene.scene import SceneError
@@ -261,7 +261,7 @@ def _of_a_face_seal(file):
 @app.command("compile")
 def compile_kernels():
     """Compile all that runs need beforehand, in an image for instance: every film and method, some minutes."""
-    from .analysis.check import compile_all
+    from .analysis.desk import compile_all
 
     leaves(lambda: "what has been compiled is kept")
     with Progress() as bar, libraries_on_stderr():
@@ -528,7 +528,7 @@ def _in_words(file):
 
 def _rules_of(file, info) -> list[dict]:
     """What the design rules say of the scene of a run."""
-    from .analysis.check import rules_of
+    from .analysis.desk import rules_of
     from .archive import ArchiveError
     from .scene.scene import SceneError
 

@@ -7,10 +7,10 @@ from functools import partial
 import numpy as np
 
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
-from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import AngularVibration, AxialVibration, Housing, Shaft, Whirl
 from sealdyn.scene.film import Film, Pads, Reynolds
-from sealdyn.scene.gas import GASES, GasDam, GasReynolds
+from sealdyn.scene.fluid import GASES, GasDam, GasReynolds
+from sealdyn.scene.forces import Contact
 from sealdyn.scene.patterns import Waviness
 from sealdyn.scene.rings import AxialRunout, Rotor, SecondarySeal, Stator, Support
 from sealdyn.scene.scene import Initial, RingStart, Scene

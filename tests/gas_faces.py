@@ -6,7 +6,7 @@ from sealdyn.dynamics.condensation import FilmDerivatives, LinearFilm
 from sealdyn.faces import geometry
 from sealdyn.films.gas_reynolds import film as gas
 from sealdyn.scene.film import Film
-from sealdyn.scene.gas import GasReynolds
+from sealdyn.scene.fluid import GasReynolds
 
 MU, TEMPERATURE = 1.8e-5, 300.0
 PARTS = [geometry.FORCE, geometry.MOMENT_X, geometry.MOMENT_Y, geometry.FLOW_INNER, geometry.FLOW_OUTER,

@@ -9,8 +9,8 @@ import numpy as np
 from families import PADS, WAVES, Drawn, gas, gas_reynolds, logarithmic, reynolds, wide
 
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear, points
-from sealdyn.scene.contact import HALF_HEIGHT, Contact
 from sealdyn.scene.film import Pads
+from sealdyn.scene.forces import HALF_HEIGHT, Contact
 from sealdyn.scene.patterns import Waviness
 from sealdyn.scene.scene import Initial
 

@@ -15,7 +15,7 @@ import own_face
 from marched_dam import Dam, flow
 from scipy.optimize import brentq
 
-from sealdyn.scene.gas import gas_of
+from sealdyn.scene.fluid import gas_of
 
 # Sectors over the root of clearance over touch: the thinner the film the sharper what it carries around the circle
 # (16 at a touch of 0.08 clearances erred by 2e-3 of the onset, 32 by 3e-6).

@@ -1,4 +1,4 @@
-"""A heated or pressed ring by biquadratic finite elements over radius and depth; nothing of the package is used.
+"""A heated ring by biquadratic finite elements over radius and depth; nothing of the package is used.
 
 A ring has the attributes that its test gives it: inner_radius, outer_radius, length, face_inner_radius,
 face_outer_radius, density, modulus, poisson, expansion, conductivity, specific_heat, convection, wetted_length, wet.
@@ -76,11 +76,10 @@ def lines(marks, first, growth):
 class Ring:
     """Its mesh, with lines where the band and the O-ring end; `first` (m) is the size of the smallest element."""
 
-    def __init__(self, ring, first=None, growth=1.45, balance=()):
+    def __init__(self, ring, first=None, growth=1.45):
         self.ring = ring
         first = (ring.outer_radius - ring.inner_radius) / 60 if first is None else first
         marks = [ring.inner_radius, ring.face_inner_radius, ring.face_outer_radius, ring.outer_radius]
-        marks = sorted([*marks, *np.atleast_1d(balance)])
         deep = [0.0, *([ring.wetted_length] if ring.wetted_length < ring.length else []), ring.length]
         self.mesh = Elements(lines(marks, first, growth), lines(deep, first, growth))
 
@@ -108,17 +107,6 @@ class Ring:
         rises = self._cooled().solve(np.eye(self.mesh.size)[:, at])
         moved = self._displaced(np.stack([self._thermal_load(rise) for rise in rises.T], axis=1))
         return rises[at], moved[2 * at + 1], self._face_radii()[at]
-
-    def pressed(self, loads):
-        """Coning (rad) by pressures (Pa) over the coordinate, `loads` of (side, from, to, function), in balance along
-        the shaft."""
-        total = np.zeros(2 * self.mesh.size)
-        for side, start, end, pressure in loads:
-            part = 1 if side in ("face", "back") else 0
-            inward = 1.0 if side in ("face", "bore") else -1.0
-            total[part::2] += inward * self.push(side, start, end, pressure)
-        assert abs(np.sum(total[1::2])) < 1e-6 * np.sum(np.abs(total[1::2]))
-        return self._shape(self._displaced(total))[0]
 
     def spun(self):
         """Coning (rad s^2) over the square of the speed (rad/s)."""

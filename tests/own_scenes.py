@@ -8,10 +8,10 @@ from functools import partial
 from families import logarithmic
 
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
-from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import Shaft
 from sealdyn.scene.film import Film, Pads, Reynolds
-from sealdyn.scene.gas import GasDam, GasReynolds
+from sealdyn.scene.fluid import GasDam, GasReynolds
+from sealdyn.scene.forces import Contact
 from sealdyn.scene.patterns import Waviness
 from sealdyn.scene.rings import Rotor, SecondarySeal, Stator, Support
 from sealdyn.scene.scene import Scene

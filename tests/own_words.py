@@ -20,7 +20,7 @@ from own_face import DRAG, FLOW, FORCE, MOMENT_X, MOMENT_Y, PRESS, PRESS_X, PRES
 from own_gas import LOADS, OwnGas
 from scipy.integrate import DOP853, Radau
 
-from sealdyn.scene.gas import gas_of
+from sealdyn.scene.fluid import gas_of
 
 
 def value_and_slope(quantity, start, end):

@@ -6,7 +6,7 @@ from pathlib import Path
 from sealdyn import read_scenario
 from sealdyn.scene.excitation import Shaft
 from sealdyn.scene.film import Film, Pads, Reynolds
-from sealdyn.scene.gas import GasReynolds
+from sealdyn.scene.fluid import GasReynolds
 from sealdyn.scene.patterns import Waviness
 from sealdyn.scene.rings import Rotor, Stator, Support
 from sealdyn.scene.scene import Scene

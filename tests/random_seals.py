@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 from patterned_faces import gas, liquid, pads, seal
 
-from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import Shaft
 from sealdyn.scene.film import Coefficients, Film, aligned_gaps
+from sealdyn.scene.forces import Contact
 from sealdyn.scene.patterns import Waviness
 from sealdyn.scene.rings import Rotor, Stator, Support
 from sealdyn.scene.scene import Scene

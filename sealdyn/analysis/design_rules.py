@@ -14,9 +14,9 @@ from ..dynamics.model import Model
 from ..numerics.piecewise_linear import initially, points
 from ..scenario.reader import Scenario
 from ..scene.application import Application
-from ..scene.gas import viscosity_of
+from ..scene.fluid import viscosity_of
 from ..scene.patterns import HIGHEST_ORDER
-from .gas_rules import OF_GAS
+from .other_rules import BALANCE, OF_GAS, RUNOUT, SPEEDS, TRAVEL, Duty, seal_type_finding
 from .seal_figures import (
     Finding,
     Rule,
@@ -30,7 +30,6 @@ from .seal_figures import (
     resonances,
     rows,
 )
-from .seal_types import BALANCE, RUNOUT, SPEEDS, TRAVEL, Duty, seal_type_finding
 
 CC_PER_H = 1e-6 / 3600
 SPRINGS = {"wave_washer": "a wave washer takes", "coil": "coil springs take", "bellows": "bellows take"}
@@ -402,5 +401,5 @@ RULES = {
     "shaft_resonance": Rule(_shaft_resonance, None, "Hz", "rotation 3 to 350 Hz", "sealdyn study campbell FILE"),
     "sliding_speed": Rule(_sliding_speed, SPEEDS["face seal"], "m/s", "20 000 ft/min"),
 }  # fmt: skip
-# In a gearbox: what is asked of a gas film in their place stands in gas_rules.py.
+# In a gearbox: what is asked of a gas film in their place stands in other_rules.py.
 OF_OIL = ("coking", "film_thickness", "leakage", "lubricant_side", "seal_type")

@@ -22,8 +22,7 @@ from ..faces.geometry import (
     SPIN_DIFFERENCE,
 )
 from ..quantities import resolved
-from ..scene.scene import SceneError
-from ..scene.variants import frozen_at_start, with_values
+from ..scene.scene import SceneError, frozen_at_start, with_values
 
 STEP = 0.02
 

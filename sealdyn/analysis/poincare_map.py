@@ -21,8 +21,7 @@ from ..numerics import time_series
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..numerics.time_series import two_trajectories
 from ..scene.rings import RING_NAMES
-from ..scene.scene import Closing, SceneError
-from ..scene.variants import part, tables_at_end, with_values
+from ..scene.scene import Closing, SceneError, part, tables_at_end, with_values
 from ..simulation.selection import choose_method
 from ..solvers.contract import Cause, Counts, Recorder, SolverFailure, Status, tolerance_for
 from ..solvers.integrate import solve

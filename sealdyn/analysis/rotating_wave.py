@@ -21,8 +21,7 @@ from ..dynamics.imposed_motion import ROTOR_SPEED
 from ..dynamics.linearisation import moves_with_speed
 from ..dynamics.model import Model
 from ..faces.geometry import smallest_gap
-from ..scene.scene import Scene
-from ..scene.variants import frozen_at_start, refuse_uneven, unforced
+from ..scene.scene import Scene, frozen_at_start, refuse_uneven, unforced
 
 SPEED_AT = equations.LEG_AT + ROTOR_SPEED
 # A solution's residual, relative to the scales of force; central-difference step of the linearisation.

@@ -19,8 +19,7 @@ from ..dynamics.run_state import RunState
 from ..faces.film_thickness import h_min
 from ..faces.geometry import COLLAPSE, DZ_RATE, GX, GX_RATE, GY, GY_RATE, MEAN_SPIN
 from ..scene.patterns import face_orders
-from ..scene.scene import SceneError
-from ..scene.variants import uneven_supports
+from ..scene.scene import SceneError, uneven_supports
 from ..simulation.selection import choose_method
 from ..solvers.contract import Counts, Recorder, SolverFailure, Status
 from ..solvers.integrate import solve

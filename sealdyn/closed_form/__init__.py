@@ -18,30 +18,28 @@ from .film import (
     optimum_coning,
     radial_film_coefficients,
 )
-from .response import (
+from .tilting_ring import (
     TiltingRing,
+    axial_mode_stable,
+    centrifugal_pressure,
     contact_tilt,
+    couette_reynolds,
     critical_coning,
     critical_forcing,
     critical_tilt_inner,
     critical_tilt_outer,
     fmr_absolute_static,
+    fmr_critical_speed,
     fmr_dynamic,
     fmr_static,
-    fms_dynamic,
-    fms_static,
-    fmsr_relative_tilts,
-    superposed,
-)
-from .stability import (
-    axial_mode_stable,
-    centrifugal_pressure,
-    couette_reynolds,
-    fmr_critical_speed,
     fmr_whirl_ratio,
     fms_critical_speed,
+    fms_dynamic,
+    fms_static,
     fms_whirl_ratio,
+    fmsr_relative_tilts,
     poiseuille_reynolds,
+    superposed,
     unconditional_inertia_ratio,
 )
 

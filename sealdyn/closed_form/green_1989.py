@@ -141,8 +141,8 @@ GREEN_1989_ROUNDED = {
 
 
 def green_1989_tilt(film_stiffness: float, film_damping: float, inertia_ratio: float = 0.5) -> dict[str, float]:
-    """The seven keywords of the tilt formulas (response.py; SI) for the reference seal on a film of the caller's tilt
-    stiffness (N m/rad) and tilt damping (N m s/rad); `inertia_ratio` c = I/J.  Scalar.
+    """The seven keywords of the tilt formulas (tilting_ring.py; SI) for the reference seal on a film of the caller's
+    tilt stiffness (N m/rad) and tilt damping (N m s/rad); `inertia_ratio` c = I/J.  Scalar.
 
     **Source** Green (1989), eqs. 1-2: support at radius r_s, `K_s = K_z r_s^2 / 2`, the same for damping.
     """

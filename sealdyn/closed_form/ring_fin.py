@@ -92,7 +92,7 @@ def rigid_coning(inner_radius: float, outer_radius: float, length: float, modulu
     moment/(E (L^3/12) ln(b/a)).
 
     **Source** ring theory: hoop stress E x phi/r integrated over the section.
-    **Valid** lengths below about twice the width; beyond 20 to 90 % off, see `load_coning` of faces/ring_coning.py.
+    **Valid** lengths below about twice the width; beyond 20 to 90 % off.
     """
     return moment / (modulus * length**3 / 12 * math.log(outer_radius / inner_radius))
 

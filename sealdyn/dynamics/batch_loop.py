@@ -17,11 +17,10 @@ from ..solvers.contract import OVERLAP, longest_step
 from ..solvers.integrate import RENEWED
 from ..solvers.sundials_direct import add_refused, restart_cvode, step_cvode
 from ..solvers.sundials_libraries import BLOCK, CALLS, DATA, FUNCTION, JACOBIANS, SCALES
-from .contact_events import locate_contacts
 from .extrema import track_extremes
 from .native import BLOCK as WORDS
 from .native import FILM, GAP, PARAMETERS, SCRATCH, array
-from .tally import longest_panel
+from .tally import locate_contacts, longest_panel
 
 # How a run ended: well, as one to be looked at alone, or not at all because the loop was told to stop.
 DONE, ALONE, STOPPED = range(3)

@@ -8,12 +8,11 @@ both rings (k = stator, rotor; W_k the spin of the carrier; sg = +1 stator, -1 r
                 - K_s e - dK exp(2 i (phi_k + a)) conj(e) + M_mass,   e = gamma - gamma_c - gamma_own
 
 dK of a support with two tilt stiffnesses, whose axes, at `a`, turn with the carrier (phi_k); M_mass the moment of a
-centre of mass off the axis, of unbalance and weight, and of a load from outside (scene/loads.py), as F_load is.
+centre of mass off the axis, of unbalance and weight, and of a load from outside (scene/forces.py), as F_load is.
 Offset faces: faces/geometry.py.
 **Valid** small tilts (1e-4 rad: exact to 1e-8); a changing speed drops -i J W' gamma.
-Contact of the faces adds to F_film and M_film; friction of a secondary seal (dynamics/secondary_seal.py, of one that
-gives dynamics/elastic_seal.py) acts on its ring, and a ring that sticks rigidly follows its carrier: gamma' = gamma_c'
-+ i W (gamma - gamma_c).
+Contact of the faces adds to F_film and M_film; friction of a secondary seal (dynamics/secondary_seal.py) acts on
+its ring, and a ring that sticks rigidly follows its carrier: gamma' = gamma_c' + i W (gamma - gamma_c).
 
 Unknowns `y`: displacements, then their rates (a massless ring has none), those of the film if it has any, with contact
 or a secondary seal the impulse of contact, then the works and the sum of absolute works.  Parameter block `p`: both
@@ -88,7 +87,7 @@ from .imposed_motion import (
 FLOATS, MASS, INERTIA, POLAR, AXIAL_K, AXIAL_D, TILT_K, TILT_D, AT_Z, AT_TILT, AT_Z_RATE, AT_TILT_RATE = range(12)
 SEAL_LINE, SEAL_RADIUS, SEAL_BAND, SEAL_SMOOTH, STUCK, ONSET, SEAL_KERNEL = 12, 13, 14, 15, 16, 17, 20
 # Half the difference of two tilt stiffnesses, and the angle of the first one's axis; where in `p` the elements of a
-# secondary seal that gives begin (elastic_seal.py), 0 without one.
+# secondary seal that gives begin (secondary_seal.py), 0 without one.
 UNEVEN_K, AXIS, SEAL_AT = 21, 22, 23
 RING = 24
 WORKS_AT = 2 * RING

@@ -15,9 +15,8 @@ from ..faces.geometry import (
 )
 from ..numerics.piecewise_linear import PiecewiseLinear, initially
 from ..quantities import resolved
-from ..scene.contact import contact_thresholds
 from ..scene.film import aligned_gaps, coned
-from ..scene.loads import load_of
+from ..scene.forces import contact_thresholds, load_of
 from ..scene.patterns import grooves_of, waves_of
 from ..scene.scene import Scene, SceneError
 from .imposed_motion import set_conditions

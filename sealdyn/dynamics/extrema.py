@@ -10,11 +10,11 @@ import math
 
 import numpy as np
 
+from ..faces.film_thickness import highest_orders
 from ..faces.geometry import COLLAPSE, GX, GY, INNER_RADIUS, OUTER_RADIUS, TOUCH, WAVES, smallest_gap
-from ..faces.waviness import highest_orders
 from ..numerics.hermite import NODES, fit, value
 from ..numerics.kernel import inner_kernel, outer_kernel
-from ..scene.contact import film_in_words, limit_in_words
+from ..scene.forces import film_in_words, limit_in_words
 from ..solvers.contract import Cause, Stop
 from .equations import LEG_AT, kinematics
 from .imposed_motion import coning_at

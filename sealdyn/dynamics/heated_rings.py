@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..numerics.piecewise_linear import initially
-from ..scene.liquid import liquid_of
+from ..scene.fluid import liquid_of
 from .intervals import largest_value
 
 if TYPE_CHECKING:
-    from ..faces.ring_coning import RingBody
+    from ..faces.ring_heat import RingBody
 
 # Speed (rad/s) at least.
 STANDING = 1.0
@@ -49,8 +49,7 @@ def heated_body(scene, name: str, cooling: float = 1.0) -> HeatedBody:
     if ring.convection is None:
         return HeatedBody(ring.resistance, ring.coning_per_watt, ring.time_constant)
     from ..closed_form.ring_fin import ring_cooling
-    from ..faces.ring_coning import RingBody
-    from ..faces.ring_heat import ring_heat
+    from ..faces.ring_heat import RingBody, ring_heat
 
     film, body, liquid, cooled = scene.film, getattr(scene, name).body, liquid_of(scene.film), None
     sealed, convection = initially(film.temperature), ring.convection

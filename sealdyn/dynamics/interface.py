@@ -30,7 +30,7 @@ from ..films import film_named, film_of
 from ..numerics.piecewise_linear import initially
 from ..scene.film import Coefficients, cells_of, coned
 from ..scene.patterns import grooves_of, waves_of
-from ..scene.scene import Closing, SceneError
+from ..scene.scene import Closing, Initial, SceneError
 from .condensation import NOISE, FilmDerivatives, LinearFilm, Slopes, film_slopes, linearise
 from .equilibrium import settle
 from .imposed_motion import asperity_steps, rest_state
@@ -58,7 +58,7 @@ class Interface:
         self.film = film_of(scene, film)
         self.name = self.film.name
         self.opening_force = opening_law(scene, self.film)
-        self.clearance, self.closing, self.equilibria, self.message = settle(scene, self.opening_force)
+        self.clearance, self.closing, self.equilibria, self.message = _settled(scene, self.film, self.opening_force)
         self._table_used = self._table()
         self.f = self.film.parameters(self._table_used, self.clearance, error)
         self.contact = lay_surfaces(self.f, scene)
@@ -154,11 +154,7 @@ class Interface:
 
     def steady(self, f, s) -> np.ndarray:
         """Unknowns (n,) of the steady film at a gap state.  Raises SceneError if there are none."""
-        x = np.empty(len((self.unknowns if f is self.f else self.film.unknowns(f)).names))
-        code = self.film.start(f, s, x)
-        if code:
-            raise SceneError("film", self.film.status[code], "a gap at which this film has a solution")
-        return x
+        return _steady(self.film, f, s, self.unknowns if f is self.f else self.film.unknowns(f))
 
     @cached_property
     def _fine(self) -> np.ndarray:
@@ -322,6 +318,20 @@ def _over_grooves(asked):
     return extrapolated_force(asked.scene)
 
 
+def _settled(scene, film, opening_force):
+    """`settle` of a scene, remembered where the clearance is searched for: several models of a scene are made."""
+    if scene.film.clearance is not None:
+        return settle(scene, opening_force)
+    # Where rings start from matters to the cells only.
+    alike = scene if film.prepared is not None else replace(scene, initial=Initial())
+    return _searched_clearance(Asked(alike, film))
+
+
+@lru_cache(maxsize=8)
+def _searched_clearance(asked):
+    return settle(asked.scene, opening_law(asked.scene, asked.film))
+
+
 def flow_at_rest(interface, s, observed=None) -> None:
     """Loads, flows and friction of film and asperities at a gap state at rest, into it; `observed` film and block in
     place of the interface's own.  Raises SceneError."""
@@ -331,15 +341,28 @@ def flow_at_rest(interface, s, observed=None) -> None:
         contact.contact_load_and_friction(interface.contact, f, s)
 
 
+def loads_at_rest(scene, film, clearance: float, error: float) -> np.ndarray:
+    """The gap state at rest with loads, flows and friction of a `film` and asperities at a clearance (m), without
+    asking what closes the faces: what a search asks many times.  `error` of the film's integrals.  Raises
+    SceneError."""
+    f = film.parameters(prepared(scene, film), clearance, error)
+    rough, (s, _) = lay_surfaces(f, scene), rest_state(scene, clearance)
+    film.flow(f, s, *([_steady(film, f, s, film.unknowns(f))] if film.unknowns else []))
+    if rough is not None:
+        contact.contact_load_and_friction(rough, f, s)
+    return s
+
+
+def _steady(film, f, s, unknowns) -> np.ndarray:
+    x = np.empty(len(unknowns.names))
+    if code := film.start(f, s, x):
+        raise SceneError("film", film.status[code], "a gap at which this film has a solution")
+    return x
+
+
 def _known(stiffness, damping, error) -> Slopes:
     """Stiffness and damping known to a relative `error`."""
     return Slopes(stiffness, damping, error * np.abs(stiffness), error * np.abs(damping))
-
-
-def linearised_film(wrench, f, scene, clearance, interval=None, mean_spin=None, shift=0.0, pace=None):
-    """Stiffness and damping matrices (3, 3) of a film's `wrench(f, s)` about `rest_state`."""
-    s, steps = rest_state(scene, clearance, interval, mean_spin, shift, pace)
-    return linearise(wrench, f, s, steps)
 
 
 # --- Cells ---------------------------------------------------------------------------------------------
@@ -369,7 +392,7 @@ class Asked:
         self.scene, self.film, self.words = scene, film, f"{film and film.name} {scene!r}"
 
     def __eq__(self, other):
-        return self.words == other.words
+        return self.words == other.words and self.film == other.film
 
     def __hash__(self):
         return hash(self.words)

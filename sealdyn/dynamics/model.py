@@ -9,7 +9,7 @@ import numpy as np
 from ..faces.geometry import FACE_SIZE
 from ..numerics.piecewise_linear import PiecewiseLinear, initially
 from ..scene.film import aligned_gaps, coning_change
-from ..scene.loads import load_of
+from ..scene.forces import load_of
 from ..scene.rings import RING_NAMES
 from ..scene.scene import Scene, SceneError
 from . import equations, linearisation, modes
@@ -93,8 +93,8 @@ class Model:
 
     def under(self, scene: Scene, loads) -> "Model":
         """The same equations under other conditions: the `scene` with what may be a table changed, and `loads` on its
-        rings, harmonics (n, ROW) (from_outside.py).  **Valid** for the segments of a run; numbers at rest are those of
-        the scene."""
+        rings, harmonics (n, ROW) (imposed_motion.py).  **Valid** for the segments of a run; numbers at rest are those
+        of the scene."""
         other = copy.copy(self)
         other.scene, other.loads = scene, loads
         other._shifts, other._linear_scenes, other._still_films = {}, {}, {}

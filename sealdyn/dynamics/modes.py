@@ -1,4 +1,4 @@
-"""Linearised scene: matrices, eigenvalues, stability, harmonic balance.
+"""Linearised scene: matrices, eigenvalues, stability, harmonic balance, and what the shaft feels of it.
 
 Assembled in numpy from the ring and film coefficients alone, sharing no code with the compiled equations
 of motion, so that the two check each other.  Unknowns: (z, tilt_x, tilt_y) of every floating ring.
@@ -9,9 +9,9 @@ from functools import cached_property
 
 import numpy as np
 
-from ..scene.rings import RING_NAMES
+from ..scene.rings import RING_NAMES, ROTOR, STATOR
 from ..scene.scene import SceneError
-from .characteristic import roots
+from .exponents import roots
 
 # Rotation by 90 degrees in the tilt plane: multiplication by i of tilt_x + i tilt_y.
 QUARTER_TURN = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
@@ -147,7 +147,7 @@ class LinearScene:
         """Finite eigenvalues (m,) and displacement shapes (n, m), not to be changed; massless unknowns are allowed.
         Of a film that stores those of its own modes too, as far as film_modes.py looks."""
         if self.turning:
-            from .turning_supports import exponents
+            from .exponents import exponents
 
             return exponents(self)
         return self._eigen if self.film is None else self._coupled[:2]
@@ -315,7 +315,7 @@ class LinearScene:
         """Each imposed harmonic with its response (n,); where supports turn uneven also the frequencies that they add,
         as harmonics without a cause."""
         if self.turning:
-            from .turning_supports import sidebands
+            from .exponents import sidebands
 
             found, none = [], np.zeros(3, dtype=complex)
             for harmonic in harmonics:
@@ -394,3 +394,24 @@ def verdict(modes: list[Mode]) -> str:
     if any(mode.value.real - mode.error > 0.0 for mode in modes):
         return "unstable"
     return "stable" if all(mode.value.real + mode.error < 0.0 for mode in modes) else "neutral"
+
+
+def at_shaft(linear: LinearScene, frequency: float) -> np.ndarray:
+    """Dynamic stiffness (3, 3), complex, at a frequency (rad/s): force (N) and moments (N m) per displacement (m) and
+    tilts (rad) of the shaft.  Raises ValueError for a support that turns and is not the same about all axes."""
+    if linear.turning:
+        raise ValueError("a support that turns with two tilt stiffnesses: no one stiffness at the shaft")
+    at = linear.at_frequency(frequency)
+    film = at.film_k + 1j * frequency * at.film_d
+    stator, rotor = linear.rings[STATOR], linear.rings[ROTOR]
+    if stator.floats:
+        film = film - film @ np.linalg.solve(_alone(stator, frequency) + film, film)
+    if not rotor.floats:
+        return film
+    support = rotor.support_at(frequency)
+    return support - support @ np.linalg.solve(_alone(rotor, frequency) + film, support)
+
+
+def _alone(ring: RingNumbers, w: float) -> np.ndarray:
+    mass, damping, stiffness = ring.alone()
+    return stiffness + 1j * w * damping - w**2 * mass

@@ -6,13 +6,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..faces.film_thickness import h_min
+from ..faces.film_thickness import h_min, highest_orders
 from ..faces.geometry import COLLAPSE
-from ..faces.waviness import highest_orders
-from ..scene.contact import film_in_words, limit_in_words
+from ..scene.forces import film_in_words, limit_in_words
 from ..scene.scene import SceneError
 from ..scene.sweep import end
-from .contact_events import ContactEvents
 from .equilibrium import pulled_apart
 from .extrema import ExtremaTracker
 from .imposed_motion import harmonics_of_segment
@@ -21,6 +19,7 @@ from .model import Model
 from .segments import Segment
 from .stick_slip import StickSlip
 from .swept_motion import fastest_sweep, splines, sweeps_of, sweeps_of_segment
+from .tally import ContactEvents
 
 
 class Concern(StrEnum):
@@ -71,7 +70,7 @@ class RunState:
         self.stick_slip = StickSlip(model) if model.unknowns.coulomb_rings else None
         if model.unknowns.elastic_rings:
             # Loaded only where a seal gives.
-            from .elastic_seal import Reversals
+            from .secondary_seal import Reversals
 
             self.stick_slip = Reversals(model)
         remark = model.interface.film.remark

@@ -7,8 +7,8 @@ from functools import cached_property
 import numpy as np
 
 from ..faces import contact
+from ..faces.film_thickness import highest_orders
 from ..faces.geometry import GAP_STATE_SIZE, REFUSED, WAVES
-from ..faces.waviness import highest_orders
 from ..scene.rings import STATOR
 from ..solvers.contract import SolverFailure
 from . import equations, linearisation
@@ -86,7 +86,7 @@ class Segment:
         head = np.array([x for pair in pairs for x in pair] + [*coned, *angles, len(rows)])
         p = np.concatenate([self.model.unknowns.ring_block, imposed_block(head, rows, self.sweeps, scene, interval)])
         for k in self.model.unknowns.elastic_rings:
-            from .elastic_seal import elements_block
+            from .secondary_seal import elements_block
 
             block = elements_block(self.model.unknowns.seal(k), self.model.unknowns.with_tilt, self.stuck.get(k))
             p[equations.RING * k + equations.SEAL_AT] = len(p)

@@ -6,6 +6,7 @@ from functools import cache, cached_property, partial
 
 import numpy as np
 
+from ..faces.film_thickness import wave_parts_along
 from ..faces.geometry import (
     CAVITATED,
     CONING,
@@ -36,10 +37,9 @@ from ..faces.geometry import (
     WEAR,
     wide_ring,
 )
-from ..faces.waviness import wave_parts_along
 from ..quantities import everyday
 from ..scene.film import coning_varies
-from ..scene.gas import density_of
+from ..scene.fluid import density_of
 from ..scene.rings import RING_NAMES
 from . import equations
 from .imposed_motion import OWN_X, OWN_Y, PER_RING, TILT_X, TILT_X_RATE, TILT_Y, TILT_Y_RATE, Z_RATE, Z

@@ -12,18 +12,18 @@ import numpy as np
 
 from ..numerics.piecewise_linear import crossing
 from ..scene.scene import SceneError
-from .characteristic import roots, slope
+from .exponents import roots, slope
 
 # --- Neutral speeds ------------------------------------------------------------------------------------
 
 # Shaft speeds at which a whirl neither grows nor decays, all of them, of rings on a film whose matrices are linear in
 # the speed: no range is searched.
 #
-# On the imaginary axis, s = i v, the characteristic function of the tilts (characteristic.py) is a polynomial in the
+# On the imaginary axis, s = i v, the characteristic function of the tilts (exponents.py) is a polynomial in the
 # whirl's frequency v and the shaft speed w, complex, so that two real ones vanish together. Of one ring the imaginary
 # part, the damping's, makes v linear in w, as in the formulas of Green, and the real one a quadratic. Of two rings
 # both are quadratics in w; their resultant is a polynomial in v, and Newton's method mends what forming it has cost.
-# **Source** derived here; one ring with its stator at rest: closed_form/stability.py.
+# **Source** derived here; one ring with its stator at rest: closed_form/tilting_ring.py.
 
 # A pair that Newton's method does not hold to this many times the rounding of chi is none; speeds nearer one another
 # than this share are one.

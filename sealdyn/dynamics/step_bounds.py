@@ -15,8 +15,8 @@ import math
 
 import numpy as np
 
+from ..faces.film_thickness import wave_rows
 from ..faces.geometry import CLEARANCE, INNER_RADIUS, OUTER_RADIUS, smallest_gap
-from ..faces.waviness import wave_rows
 from ..numerics.kernel import inner_kernel
 from .equations import AT_TILT, AT_Z, FLOATS, LEG_AT, RING
 from .imposed_motion import AXIAL, MOTION_AT, OSCILLATOR_COUNT, OSCILLATORS, OWN, ROW, SWEEPS_AT, TURNING

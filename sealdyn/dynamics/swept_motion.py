@@ -21,7 +21,7 @@ import numpy as np
 
 from ..numerics.kernel import inner_kernel
 from ..scene.excitation import Motion
-from ..scene.loads import LoadSamples, samples_of_loads
+from ..scene.forces import LoadSamples, samples_of_loads
 from ..scene.rings import RING_NAMES
 from ..scene.scene import SceneError
 from ..scene.sweep import CORNER, end, level, ramps, span, tilts

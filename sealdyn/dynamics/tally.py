@@ -1,17 +1,264 @@
-"""Means and largest values of a run's series: integrals over the solver's steps, and peaks located between them.
+"""What a run is told by beside its samples: contacts of the faces, located between steps (touch, deepest place,
+lift-off, impulse), and means and largest values of its series, integrals over the solver's steps and peaks between
+them.
 
-Whatever is sampled for an archive, these are of the motion itself.  Lobatto's rule (numerics/hermite.py) on panels
-of a few steps, at most so long that an oscillation of TIMES the fastest motion of interest keeps the accuracy; a peak
-is sought where a parabola through three points rises above the largest value so far, and looked at there.
+As in dynamics/extrema.py the motion inside a step is a polynomial and the imposed motion exact, so no contact is
+missed however long the step; what is closer to touching than the gap's own error is called grazing, since it cannot
+be decided.
+Whatever is sampled for an archive, means and peaks are of the motion itself.  Lobatto's rule (numerics/hermite.py) on
+panels of a few steps, at most so long that an oscillation of TIMES the fastest motion of interest keeps the accuracy; a
+peak is sought where a parabola through three points rises above the largest value so far, and looked at there.
 """
 
 import math
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 
-from ..numerics.hermite import LOBATTO_ERROR, LOBATTO_ORDER, points, sample
+from ..faces.geometry import TOUCH
+from ..numerics.hermite import LOBATTO_ERROR, LOBATTO_ORDER, NODES, fit, points, sample, value
+from ..numerics.kernel import inner_kernel, outer_kernel
+from .extrema import MOST_SCAN, PER_RADIAN, SCAN, crossing_time, gap_and_tilt, locate_minimum, scan_step
+from .native import thinnest_value
 from .signals import TALLIED, signals
+from .step_bounds import THICKNESS
+
+# One row per contact (or near miss): 1 a contact, 0 grazing; times of touch, lift-off and deepest place (s); film
+# thickness (m), angle (rad) and radius (m) there; impulse (N s).
+KIND, TOUCHED, LIFTED, DEEPEST, DEPTH_H, DEPTH_THETA, DEPTH_RADIUS, IMPULSE = range(8)
+ROW = 8
+# A contact that goes on, carried from block to block: its row so far, whether it is open, and whether the gap was
+# sinking at the last step's end.
+OPEN, SINKING = ROW, ROW + 1
+STATE = ROW + 2
+
+
+@dataclass
+class ContactSummary:
+    """Contacts so far: how many, grazing ones, the first touch (s), the thinnest film in any (`lowest`, m), the longest
+    (s), and the sum of impulses (N s)."""
+
+    count: int = 0
+    grazing: int = 0
+    first: float | None = None
+    lowest: float | None = None
+    longest: float = 0.0
+    impulse: float = 0.0
+
+    def add(self, rows):
+        """Count the contacts of `rows` (k, ROW), as `locate_contacts` writes them."""
+        for row in rows:
+            if row[KIND] == 0.0:
+                self.grazing += 1
+                continue
+            self.count += 1
+            self.first = float(row[TOUCHED]) if self.first is None else self.first
+            self.lowest = float(row[DEPTH_H] if self.lowest is None else min(self.lowest, row[DEPTH_H]))
+            self.impulse += float(row[IMPULSE])
+            if np.isfinite(row[LIFTED]):
+                self.longest = max(self.longest, float(row[LIFTED] - row[TOUCHED]))
+
+
+def contact_event(row, level: float) -> dict:
+    """A row (ROW,) as an event of the archive, `level` the film thickness (m) of touch: kind ("contact" or "grazing"),
+    time, lift_off, deepest (s), value (thinnest film, m), theta (rad), radius (m), depth below touch (m), impulse (N
+    s), text."""
+    kind = "contact" if row[KIND] else "grazing"
+    depth = level - row[DEPTH_H]
+    text = (
+        f"faces touch, {depth * 1e6:.3g} um deep"
+        if row[KIND]
+        else f"{abs(depth) * 1e6:.2g} um {'below' if depth > 0 else 'above'} touch: undecided at this accuracy"
+    )
+    return {"kind": kind, "time": float(row[TOUCHED]), "value": float(row[DEPTH_H]), "text": text,
+            "lift_off": float(row[LIFTED]), "deepest": float(row[DEEPEST]), "theta": float(row[DEPTH_THETA]),
+            "radius": float(row[DEPTH_RADIUS]), "impulse": float(row[IMPULSE]), "depth": float(depth)}  # fmt: skip
+
+
+def _no_contact() -> np.ndarray:
+    """No contact yet."""
+    return np.zeros(STATE)
+
+
+@inner_kernel()
+def _begin(state, touched, impulse):
+    state[OPEN], state[TOUCHED], state[IMPULSE], state[DEPTH_H] = 1.0, touched, impulse, np.inf
+
+
+@inner_kernel()
+def _deepen(state, at, h, theta, radius):
+    if h < state[DEPTH_H]:
+        state[DEEPEST], state[DEPTH_H], state[DEPTH_THETA], state[DEPTH_RADIUS] = at, h, theta, radius
+
+
+@inner_kernel()
+def _close(state, lifted, impulse, level, error, rows, count):
+    """A contact ends: its row is written; shallower than the error it is grazing."""
+    rows[count] = state[:ROW]
+    rows[count, LIFTED], rows[count, IMPULSE] = lifted, impulse - state[IMPULSE]
+    rows[count, KIND] = 1.0 if level - state[DEPTH_H] > error else 0.0
+    state[OPEN] = 0.0
+    return count + 1
+
+
+@outer_kernel()
+def locate_contacts(t, q_all, q_rate_all, impulse, count, begin, end, reach, p, thinnest, f, y, yp, w, s, start, pace,
+                    error, state, rows):  # fmt: skip
+    """Contacts in steps [begin, end] of a segment that starts at `start` (s), into `rows` (k, ROW); returns how many
+    ended.
+
+    `t` (count,), `q_all`, `q_rate_all` (count, n) the accepted steps, `impulse` (count,) the impulse so far (N s),
+    `reach` (count, 2) bounds of the thinnest film (m) of a step; `p`, `w`, `s` as in dynamics/equations.py, `thinnest`
+    as in extrema.py, `f` the film's block, `y`, `yp` (size,) scratch; `error` of the gap (m); `pace` the fastest
+    imposed motion (rad/s); `state` (STATE,) is carried from call to call.
+    """
+    n, level = q_all.shape[1], f[TOUCH]
+    table, nodes = np.zeros((2 * NODES, n)), np.zeros(2 * NODES)
+    q, q_rate, out, seen = np.zeros(n), np.zeros(n), np.zeros(3), np.zeros((MOST_SCAN + 1, 3))
+    # Times looked at in a step: the scan, and the located dips between its points.
+    at, height = np.zeros(2 * MOST_SCAN + 2), np.zeros(2 * MOST_SCAN + 2)
+    found = 0
+    for k in range(begin, end):
+        low, high = t[k], t[k + 1]
+        scan = min(max(SCAN, int(PER_RADIAN * pace * (high - low))), MOST_SCAN)
+        if high <= low:
+            continue
+        # No touch; or no lift-off, and nowhere deeper than before.
+        apart = state[OPEN] == 0.0 and reach[k, 0] > level + error
+        if apart or (state[OPEN] != 0.0 and reach[k, 1] < level and reach[k, 0] >= state[DEPTH_H]):
+            state[SINKING] = 0.0
+            continue
+        scan_step(t, q_all, q_rate_all, k, low, high, y, yp, p, thinnest, f, w, s, q, out, seen, scan, 0, scan)
+        size = fit(t, q_all, q_rate_all, k, count, table, nodes)
+        step = (high - low) / scan
+        points = 0
+        for i in range(scan + 1):
+            value(table, nodes, size, low + i * step, q, q_rate)
+            gap_and_tilt(low + i * step, q, y, yp, p, thinnest, f, w, s, out)
+            left, right = max(i - 1, 0), min(i + 1, scan)
+            dip = seen[i, THICKNESS] <= seen[left, THICKNESS] and seen[i, THICKNESS] <= seen[right, THICKNESS]
+            here, here_h = low + i * step, out[THICKNESS]
+            if dip:
+                best = locate_minimum(
+                    THICKNESS, low + left * step, low + right * step,
+                    table, nodes, size, q, q_rate, y, yp, p, thinnest, f, w, s, out,
+                )  # fmt: skip
+                value(table, nodes, size, best, q, q_rate)
+                gap_and_tilt(best, q, y, yp, p, thinnest, f, w, s, out)
+                before = best < here
+                if out[THICKNESS] < here_h and best != here:
+                    if before:
+                        at[points], height[points] = best, out[THICKNESS]
+                        at[points + 1], height[points + 1] = here, here_h
+                    else:
+                        at[points], height[points] = here, here_h
+                        at[points + 1], height[points + 1] = best, out[THICKNESS]
+                    points += 2
+                    continue
+            at[points], height[points] = here, here_h
+            points += 1
+        for i in range(points):
+            if i > 0 and height[i - 1] >= level > height[i] and state[OPEN] == 0.0:
+                touched = crossing_time(
+                    at[i - 1], at[i], level, table, nodes, size, q, q_rate, y, yp, p, thinnest, f, w, s, out
+                )  # fmt: skip
+                _begin(state, start + touched, impulse[k])
+            elif state[OPEN] == 0.0 and height[i] < level:
+                _begin(state, start + at[i], impulse[k])
+            if height[i] < level:
+                value(table, nodes, size, at[i], q, q_rate)
+                theta, radius = gap_and_tilt(at[i], q, y, yp, p, thinnest, f, w, s, out)
+                _deepen(state, start + at[i], height[i], theta, radius)
+            elif state[OPEN] != 0.0:
+                lifted = at[i]
+                if i > 0:
+                    lifted = crossing_time(
+                        at[i], at[i - 1], level, table, nodes, size, q, q_rate, y, yp, p, thinnest, f, w, s, out
+                    )
+                if found < len(rows):
+                    found = _close(state, start + lifted, impulse[k + 1], level, error, rows, found)
+            elif i < points - 1 and height[i] <= level + error:
+                sinking = height[i] <= height[i - 1] if i > 0 else state[SINKING] != 0.0
+                if sinking and height[i] < height[i + 1] and found < len(rows):
+                    value(table, nodes, size, at[i], q, q_rate)
+                    theta, radius = gap_and_tilt(at[i], q, y, yp, p, thinnest, f, w, s, out)
+                    _begin(state, start + at[i], impulse[k])
+                    _deepen(state, start + at[i], height[i], theta, radius)
+                    found = _close(state, start + at[i], impulse[k + 1], level, error, rows, found)
+        state[SINKING] = height[points - 1] <= height[points - 2]
+    return found
+
+
+class ContactEvents:
+    """An observer of contacts: `summary` of those so far (ContactSummary), those that have ended but are not yet events
+    (`waiting`), and one that goes on (`open`).  It follows the ExtremaTracker, whose bound on each step's film tells
+    where nothing can touch."""
+
+    def __init__(self, model, extrema):
+        self.model, self.extrema, self.summary = model, extrema, ContactSummary()
+        self.open, self.waiting, self.segment = _no_contact(), [], None
+
+    def begin(self, segment, tau, y):
+        """A segment begins: a contact that goes on stays open."""
+        self.segment = segment
+
+    def accept(self, block):
+        """Locate the contacts in a block of steps."""
+        if self.model.contact is None:
+            return
+        segment, (q, q_rate) = self.segment, block.motion
+        # Each dip lies between points of the scan.
+        looked = PER_RADIAN * segment.pace * np.diff(block.t[block.begin : block.end + 1])
+        rows = np.empty((64 + int(np.sum(np.clip(looked, SCAN, MOST_SCAN) + 1)), ROW))
+        found = locate_contacts(
+            block.t, q, q_rate, segment.impulses(block.ys), len(block.t), block.begin, block.end, self.extrema.reach,
+            segment.p, thinnest_value(self.model.face), self.model.f, np.zeros(segment.size), np.zeros(segment.size),
+            segment.w, segment.s, segment.time, segment.pace, self.model.gap_error(), self.open, rows,
+        )  # fmt: skip
+        self.waiting.extend(rows[:found])
+
+    def tell(self, log, end: tuple | None = None):
+        """Hand the contacts that have ended to `log` as events, and add them to the summary; at the `end` (time (s),
+        unknowns (size,)) of a run also one that goes on, without a lift-off."""
+        rows = self._rows(end)
+        self.summary, self.waiting = self._with(rows, end), []
+        if end:
+            self.open[OPEN] = 0.0
+        if rows:
+            log([contact_event(row, self.model.face[TOUCH]) for row in rows])
+
+    def so_far(self, end: tuple) -> ContactSummary:
+        """The summary with all contacts up to the `end` (as of `tell`) of a run, of which one may go on."""
+        return self._with(self._rows(end), end)
+
+    def _rows(self, end) -> list:
+        """Contacts that have ended and have not been told, and at the `end` of a run the one that goes on."""
+        if not (end and self.open[OPEN]):
+            return self.waiting
+        row = self.open[:ROW].copy()
+        row[KIND], row[LIFTED] = 1.0, np.nan
+        row[IMPULSE] = end[1][self.model.unknowns.impulse] - row[IMPULSE]
+        return [*self.waiting, row]
+
+    def _with(self, rows, end) -> ContactSummary:
+        """The summary with these contacts."""
+        found = replace(self.summary)
+        found.add(rows)
+        if end and self.open[OPEN]:
+            found.longest = max(found.longest, float(end[0] - self.open[TOUCHED]))
+        return found
+
+    def state(self) -> dict:
+        """What a continued run needs: {"touching": (STATE,), "contacts": counts, "untold": (k, ROW)}."""
+        return {"touching": self.open, "contacts": vars(self.summary), "untold": np.reshape(self.waiting, (-1, ROW))}
+
+    def restore(self, state: dict):
+        """Go on from `state`."""
+        self.open[:] = state["touching"]
+        self.summary = ContactSummary(**state["contacts"])
+        self.waiting = list(np.reshape(state["untold"], (-1, ROW)))
+
 
 # Harmonics of the fastest motion that are resolved, and the longest panel (rad of it).
 TIMES, LONGEST = 2.0, 1.0

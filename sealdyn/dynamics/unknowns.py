@@ -7,11 +7,11 @@ import numpy as np
 from ..faces.geometry import offset_block
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene.film import follows_speed
-from ..scene.loads import load_of, pulls
+from ..scene.forces import load_of, pulls
 from ..scene.patterns import alike_sectors, face_orders, faces_tilt, waves_of
 from ..scene.rings import RING_NAMES, ROTOR, STATOR
+from ..scene.scene import turning_supports
 from ..scene.sweep import largest_amplitude, tilts
-from ..scene.variants import turning_supports
 from . import equations
 from .imposed_motion import AXIAL, ON_RING, PULL, UNBALANCE, fluid_conditions, harmonics_of_segment
 from .intervals import largest_value
@@ -141,7 +141,7 @@ class Unknowns:
                 block[equations.SEAL_SMOOTH] = seal.law == "regularised"
                 # Loaded only where a ring has it.
                 if k in self.elastic_rings:
-                    from .elastic_seal import elastic_friction as friction
+                    from .secondary_seal import elastic_friction as friction
                 else:
                     from .secondary_seal import friction_on_ring as friction
                 block[equations.SEAL_KERNEL] = Value(friction, SEAL_TYPE).address

@@ -17,7 +17,7 @@ import numpy as np
 
 from ..numerics.piecewise_linear import PiecewiseLinear, initially
 from ..scene.film import coned
-from ..scene.variants import frozen_at
+from ..scene.scene import frozen_at
 from .heated_rings import ThermalStates
 from .interface import Asked
 from .warm_state import Warming, WarmState, unheated, warming

@@ -40,14 +40,14 @@ from ..faces.geometry import (
 from ..films import film_of
 from ..numerics.piecewise_linear import initially, shifted
 from ..scene.film import coned
-from ..scene.liquid import in_numbers, liquid_of
-from ..scene.patterns import waves_of
+from ..scene.fluid import in_numbers, liquid_of
+from ..scene.patterns import grooves_of, waves_of
 from ..scene.scene import Closing, SceneError
 from ..status import Status
 from .equilibrium import closing_law, crossing, equilibria
 from .heated_rings import ThermalStates, heated_body
 from .imposed_motion import rest_state
-from .interface import Asked, Interface, flow_at_rest, lender, opening_law, prepared
+from .interface import Asked, Interface, lender, loads_at_rest, opening_law, prepared
 
 # Rises that are looked at between the first, as a share of the last, and the end of the liquid's table.
 SCANNED, FIRST = 60, 1e-4
@@ -102,10 +102,11 @@ class Warming:
     and its warm states.  Raises SceneError where no closing force is known."""
 
     def __init__(self, scene, cooling: float = 1.0):
-        cold = unheated(scene)
-        self.law, self.said = closing_law(cold, opening_law(cold))
+        cold, self.cooling = unheated(scene), cooling
+        self.film = film_of(cold)
+        self.law, self.said = closing_law(cold, self._opening_law(cold))
         # Cells that are looked for are those of the unheated seal.
-        self.cells, self.cooling = prepared(cold, film_of(cold)).reynolds, cooling
+        self.cells = prepared(cold, self.film).reynolds
         self._cool(scene)
         self._begin(scene)
 
@@ -135,6 +136,7 @@ class Warming:
     def _begin(self, scene):
         self.scene = scene
         film, liquid = scene.film, liquid_of(scene.film)
+        self.plain = replace(film, heat=None, reynolds=self.cells)
         self.pressures = initially(film.inner_pressure), initially(film.outer_pressure)
         given = scene.closing.spring_force
         self.spring = self.law.spring if given is None else given
@@ -145,15 +147,18 @@ class Warming:
     def at(self, rise: float, clearance: float | None = None, coned_by: float | None = None):
         """The scene, without heat, with faces and liquid `rise` (K) above the sealed one, and a clearance (m) if given;
         its closing force is the same.  `coned_by`: coning by heat (rad), where it is not that of the steady rings."""
-        film = in_numbers(replace(self.scene.film, heat=None, reynolds=self.cells), rise)
         change = self.coning_per_kelvin * rise if coned_by is None else coned_by
-        film = replace(film, coning=shifted(film.coning, change), clearance=clearance)
+        film = in_numbers(self.plain, rise, coning=shifted(self.plain.coning, change), clearance=clearance)
         closing = Closing(self.law.balance_ratio, self.spring) if clearance is not None else Closing()
         return replace(self.scene, film=film, closing=closing)
 
+    def _opening_law(self, scene):
+        # Over grooves it is nearer than the film of a run.
+        return opening_law(scene, None if grooves_of(scene)[1] else self.film)
+
     def excess(self, rise: float):
         """Function of the clearance (m): opening force in excess of the closing force (N) at a rise (K)."""
-        force = opening_law(self.at(rise))
+        force = self._opening_law(self.at(rise))
         return lambda clearance: force(clearance, *self.pressures) - self.closing
 
     def clearance(self, rise: float, near: float | None = None) -> float | None:
@@ -168,7 +173,7 @@ class Warming:
                 below, above = (below, above * STRIDE) if e > 0.0 else (below / STRIDE, above)
         scene = self.at(rise)
         film, surfaces = coned(scene), (waves_of(scene), scene.contact)
-        force = opening_law(scene)
+        force = self._opening_law(scene)
         try:
             roots = equilibria(film, force, self.closing, *self.pressures, *surfaces)
         except SceneError:
@@ -180,10 +185,11 @@ class Warming:
         """Heat made and carried at a rise (K) and a clearance (m), whether or not they balance; `coned_by` as in
         `at`."""
         scene = self.at(rise, clearance, coned_by)
-        film, interface = scene.film, Interface(scene, FINE, lender(scene, film_of(scene)))
-        s, _ = rest_state(scene, clearance)
-        flow_at_rest(interface, s)
-        opening = float(s[FORCE] + (s[CONTACT_FORCE] if interface.contact is not None else 0.0))
+        film, s = scene.film, loads_at_rest(scene, lender(scene, self.film), clearance, FINE)
+        opening = float(s[FORCE] + s[CONTACT_FORCE])
+        if math.isnan(opening):
+            found = f"{clearance:.4g} m, at which the film has no solution"
+            raise SceneError("film.clearance", found, "a clearance of the size of a film's, and a flow through it")
         leakage = s[FLOW_INNER] * math.copysign(1.0, self.pressures[0] - self.pressures[1])
         speed = self.scene.film.heat.friction * s[SPIN_DIFFERENCE]
         rubbed, sheared = (float(abs(s[k] * speed)) for k in (CONTACT_TORQUE, TORQUE))
@@ -199,7 +205,7 @@ class Warming:
         """Damping of the film, of rates of the clearance (N s/m) and of the coning (N s/rad), at a rise (K) and a
         clearance (m); `coned_by` as in `at`."""
         scene = self.at(rise, clearance, coned_by)
-        interface, wide = Interface(scene, FINE), scene.film.outer_radius - scene.film.inner_radius
+        interface, wide = Interface(scene, FINE, self.film), scene.film.outer_radius - scene.film.inner_radius
 
         def force(place, rate):
             s, _ = rest_state(scene, clearance)

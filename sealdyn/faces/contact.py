@@ -26,9 +26,10 @@ from functools import lru_cache
 import numpy as np
 
 from ..numerics.kernel import inner_kernel, outer_kernel, value_kernel
-from ..scene.contact import HALF_HEIGHT as HALF
-from ..scene.contact import Contact, contact_thresholds, finish, plateau_height
+from ..scene.forces import HALF_HEIGHT as HALF
+from ..scene.forces import Contact, contact_thresholds, finish, plateau_height
 from ..scene.patterns import land_shares
+from .film_thickness import lay_waves, waves
 from .geometry import (
     COLLAPSE,
     CONING_CHANGE,
@@ -85,7 +86,6 @@ from .roughness import (
     stored,
     touching_radius,
 )
-from .waviness import lay_waves, waves
 
 # Gauss points of a panel around the circle: error below 1e-10 of the load (tests/convergence).
 ANGLE_POINTS = {"christensen": 12, "greenwood-williamson": 20, "plateaus": 12}
@@ -99,34 +99,41 @@ def lay_asperities(contact: Contact, face: np.ndarray, points: int | None = None
     into the `face` block, or a film's that begins with it.  `points`: Gauss points of each panel around the circle;
     `lands`: radii (m) of a face with grooves and the share of land between them, as of patterns.land_shares.
     """
-    points = points or ANGLE_POINTS[contact.law]
-    face[FLOOR], top, bottom = contact_thresholds(contact)
-    face[TOUCH], face[COLLAPSE], face[HALF_HEIGHT] = top, bottom, HALF * finish(contact)
-    face[PLATEAU], span = plateau_height(contact), top - bottom
+    face[FLOOR], face[TOUCH], face[COLLAPSE] = contact_thresholds(contact)
+    face[HALF_HEIGHT], face[PLATEAU] = HALF * finish(contact), plateau_height(contact)
+    k = _laws(contact, points or ANGLE_POINTS[contact.law], bool(face[PROFILE] > 0)).copy()
+    k[FACE_AREA] = math.pi * (face[OUTER_RADIUS] ** 2 - face[INNER_RADIUS] ** 2)
+    if lands is not None:
+        radii, shares = lands
+        k[ANNULI] = len(shares)
+        k[ANNULUS_RADII:LAND_SHARES][: len(radii)], k[LAND_SHARES:NODES][: len(shares)] = radii, shares
+    return k
+
+
+@lru_cache(maxsize=16)
+def _laws(contact: Contact, points: int, profiled: bool) -> np.ndarray:
+    """The block of `lay_asperities` without what is the face's own: it is laid at every step of a search."""
+    _, top, bottom = contact_thresholds(contact)
+    span = top - bottom
     if contact.law == "christensen":
         load = scaled(christensen_series(), contact.compressive_strength)
         area = christensen_series()
     elif contact.law == "plateaus":
-        area, span = scaled(christensen_series(), plateau_share(contact.truncation)), 2.0 * face[HALF_HEIGHT]
+        area, span = scaled(christensen_series(), plateau_share(contact.truncation)), 2.0 * HALF * finish(contact)
         load = scaled(area, contact.compressive_strength)
     else:
         number = contact.asperity_density * contact.asperity_radius * contact.roughness
         stiff = 4.0 / 3.0 * number * contact.modulus * math.sqrt(contact.roughness / contact.asperity_radius)
         load, area = scaled(gaussian_series(1.5), stiff), scaled(gaussian_series(1.0), math.pi * number)
     # Exact for u^4 Q(v) r^2, and for the energy u^5 R(v) r; with a profile also for u^4 Q(v) r^3.
-    radial = (4 + int(load[0]) + 2 + int(face[PROFILE] > 0)) // 2 + 1
+    radial = (4 + int(load[0]) + 2 + int(profiled)) // 2 + 1
     k = np.zeros(NODES + 2 * (radial + points))
     k[TOP], k[SPAN] = top, span
     k[SHEAR_OF_AREA] = contact.shear_strength or 0.0
     if contact.shear_strength is None:
         k[SHEAR_OF_LOAD] = 0.1 if contact.friction_coefficient is None else contact.friction_coefficient
     k[WEAR_PER_LOAD] = contact.stator_wear_coefficient + contact.rotor_wear_coefficient
-    k[FACE_AREA] = math.pi * (face[OUTER_RADIUS] ** 2 - face[INNER_RADIUS] ** 2)
     k[LOAD:AREA], k[AREA:ENERGY], k[ENERGY:ANNULI] = load, area, stored(load, span)
-    if lands is not None:
-        radii, shares = lands
-        k[ANNULI] = len(shares)
-        k[ANNULUS_RADII:LAND_SHARES][: len(radii)], k[LAND_SHARES:NODES][: len(shares)] = radii, shares
     k[RADIAL], k[AROUND], first = radial, points, NODES
     for count in (radial, points):
         node, weight = _gauss(count)

@@ -1,7 +1,14 @@
-"""Film thickness h(r, theta, t) between the faces, its rate, and its smallest value with where it is.
+"""Film thickness h(r, theta, t) between the faces, the waves in it, and its smallest value with where it is.
 
 Axes and signs: faces/geometry.py.  `f` is a face block (the leading slots of any film's), `s` a gap state.
-**Valid** rigid faces: cones, a profile over the radius, waves around the circle, tilt.
+Waves turn with their ring and are the same at every radius; heights of both faces are counted along the shaft:
+
+    stator  + a cos(n (theta - stator angle) + phase)
+    rotor   - a cos(n (theta - rotor angle) + phase)
+
+The row of a wave in `f`: sign, order, amplitude (m), phase (rad), and which of the list of different orders it has.
+**Source** of waves: Lebeck, Teale & Pierce, ONR ME-95(79)ONR-414-1 (1979), waviness h_n cos(n theta) of one face.
+**Valid** rigid faces: cones, a profile over the radius, waves far lower than they are long, tilt.
 
 The smallest film of wavy faces is the global minimum of a trigonometric polynomial, certified by its bend.
 At one radius h = base + arm (g_x sin - g_y cos) + waves is a trigonometric polynomial of theta; over the radius it is
@@ -11,39 +18,123 @@ that could hold the minimum are kept and halved, until the second derivative kee
 steps are safe.
 **Source** branch and bound with second-order bounds: Hansen & Walster (2004), Global Optimization Using Interval
 Analysis, 12.
-**Valid** rigid faces, any orders and phases; the value is exact to 1e-13 of the clearance.
+**Valid** any orders and phases; the value is exact to 1e-13 of the clearance.
 """
 
 import math
 
 import numpy as np
 
-from ..numerics.kernel import inner_kernel, value_kernel
+from ..numerics.kernel import inner_kernel, outer_kernel, value_kernel
 from .geometry import (
     CLEARANCE,
     CONING,
     CONING_CHANGE,
-    CONING_RATE,
     DZ,
-    DZ_RATE,
+    FACE_SIZE,
     GX,
-    GX_RATE,
     GY,
-    GY_RATE,
     INNER_RADIUS,
+    MEAN_SPIN,
     ORDER_LIST,
     ORDERS,
     OUTER_RADIUS,
     PROFILE,
     PROFILE_DEPTHS,
     PROFILE_RADII,
+    ROTOR_ANGLE,
+    SPIN_DIFFERENCE,
+    STATOR_ANGLE,
     TILT_AT_MEAN,
+    WAVE_ROW,
+    WAVE_ROWS,
     WAVES,
     edge_gaps,
     node_gap,
     smallest_gap,
 )
-from .waviness import wave_parts, waves, waves_rate
+
+SIGN, ORDER, AMPLITUDE, PHASE, PLACE = range(WAVE_ROW)
+
+
+def lay_waves(f, stator, rotor) -> None:
+    """Write the waves of both rings' faces (lists of Waviness) into a face block; flat ones are left out."""
+    waves = [(sign, w) for sign, face in ((1.0, stator), (-1.0, rotor)) for w in face if w.amplitude != 0.0]
+    orders = sorted({wave.order for _, wave in waves})
+    f[WAVES], f[ORDERS] = len(waves), len(orders)
+    f[ORDER_LIST:WAVE_ROWS][: len(orders)] = orders
+    rows = [(sign, wave.order, wave.amplitude, wave.phase, orders.index(wave.order)) for sign, wave in waves]
+    f[WAVE_ROWS:FACE_SIZE][: WAVE_ROW * len(rows)] = np.array(rows).ravel()
+
+
+def wave_rows(f) -> np.ndarray:
+    """Rows (waves, WAVE_ROW) of a face block."""
+    return f[WAVE_ROWS : WAVE_ROWS + WAVE_ROW * int(f[WAVES])].reshape(-1, WAVE_ROW)
+
+
+def highest_orders(f) -> tuple[int, int]:
+    """Highest order (waves to the circle) on the stator's and on the rotor's face of a block, 0 without waves."""
+    rows = wave_rows(f)
+    stator, rotor = (int(max(rows[rows[:, SIGN] == sign, ORDER], default=0)) for sign in (1.0, -1.0))
+    return stator, rotor
+
+
+@inner_kernel()
+def waves(f, s, theta):
+    """What the waves add to the film thickness (m) at an angle (rad, from the x axis)."""
+    total = 0.0
+    for k in range(int(f[WAVES])):
+        row = WAVE_ROWS + WAVE_ROW * k
+        turned = s[STATOR_ANGLE] if f[row + SIGN] > 0.0 else s[ROTOR_ANGLE]
+        total += f[row + SIGN] * f[row + AMPLITUDE] * math.cos(f[row + ORDER] * (theta - turned) + f[row + PHASE])
+    return total
+
+
+@inner_kernel()
+def waves_rate(f, s, theta):
+    """Rate (m/s) of `waves` at a fixed angle (rad): each wave passes with its ring's spin."""
+    total = 0.0
+    for k in range(int(f[WAVES])):
+        row = WAVE_ROWS + WAVE_ROW * k
+        turned, spin = s[STATOR_ANGLE], s[MEAN_SPIN] - 0.5 * s[SPIN_DIFFERENCE]
+        if f[row + SIGN] < 0.0:
+            turned, spin = s[ROTOR_ANGLE], s[MEAN_SPIN] + 0.5 * s[SPIN_DIFFERENCE]
+        slope = f[row + ORDER] * math.sin(f[row + ORDER] * (theta - turned) + f[row + PHASE])
+        total += f[row + SIGN] * f[row + AMPLITUDE] * spin * slope
+    return total
+
+
+@inner_kernel()
+def waves_turn(f, s):
+    """Whether the ring of a wave turns."""
+    for k in range(int(f[WAVES])):
+        half = 0.5 * s[SPIN_DIFFERENCE]
+        if s[MEAN_SPIN] + (half if f[WAVE_ROWS + WAVE_ROW * k + SIGN] < 0.0 else -half) != 0.0:
+            return True
+    return False
+
+
+@inner_kernel()
+def wave_parts(f, s, cosines, sines):
+    """Waves of both faces together, sum of `cosines[j] cos(n theta) + sines[j] sin(n theta)` (m) over the different
+    orders n of the face block, both (orders,)."""
+    cosines[:], sines[:] = 0.0, 0.0
+    for k in range(int(f[WAVES])):
+        row = WAVE_ROWS + WAVE_ROW * k
+        turned = s[STATOR_ANGLE] if f[row + SIGN] > 0.0 else s[ROTOR_ANGLE]
+        at, angle = int(f[row + PLACE]), f[row + PHASE] - f[row + ORDER] * turned
+        cosines[at] += f[row + SIGN] * f[row + AMPLITUDE] * math.cos(angle)
+        sines[at] -= f[row + SIGN] * f[row + AMPLITUDE] * math.sin(angle)
+
+
+@outer_kernel()
+def wave_parts_along(f, gaps):
+    """`wave_parts` at gap states `gaps` (m, GAP_STATE_SIZE): cosine and sine parts (m), shape (m, orders, 2)."""
+    parts = np.empty((len(gaps), int(f[ORDERS]), 2))
+    for k in range(len(gaps)):
+        wave_parts(f, gaps[k], parts[k, :, 0], parts[k, :, 1])
+    return parts
+
 
 # Points of the scan per wave of the highest order; difference of two films that are one, of the clearance.
 POINTS, EQUAL = 12, 1e-13
@@ -216,15 +307,6 @@ def film_thickness(f, s, r, theta):
     """Film thickness (m) at radius r (m) and angle theta (rad, from the x axis)."""
     aligned = f[CLEARANCE] + s[DZ] + (f[CONING] + s[CONING_CHANGE]) * (r - f[INNER_RADIUS]) + _depth(f, r)
     return aligned + _arm(f, r) * (s[GX] * math.sin(theta) - s[GY] * math.cos(theta)) + waves(f, s, theta)
-
-
-@inner_kernel()
-def film_thickness_rate(f, s, r, theta):
-    """Rate of the film thickness (m/s) at a fixed radius r (m) and angle theta (rad): the rings' own rates, the
-    coning's, and the waves that pass with them."""
-    tilting = s[GX_RATE] * math.sin(theta) - s[GY_RATE] * math.cos(theta)
-    coned = s[CONING_RATE] * (r - f[INNER_RADIUS])
-    return s[DZ_RATE] + coned + _arm(f, r) * tilting + waves_rate(f, s, theta)
 
 
 def h_min(f, s) -> tuple[float, float, float]:

@@ -7,7 +7,7 @@ rotor`.  Film thickness of two rigid coned faces:
     h(r, theta, t) = C + dz + coning (r - r_i) + depth(r) + r (g_x sin(theta) - g_y cos(theta)) + waves(theta, t)
 
 where coning is the block's and its change, `depth` is what faces that are not plain cones (worn ones) are wider apart,
-linear between the radii of a profile, 0 without one, and `waves` what turns with either ring (faces/waviness.py).
+linear between the radii of a profile, 0 without one, and `waves` what turns with either ring (faces/film_thickness.py).
 Without waves and with `g = G exp(i alpha)` the thinnest place lies at theta = alpha - pi/2, and beta is counted from
 there: h = C + dz + coning (r - r_i) + depth(r) - r G cos(beta).  Here are the slots and the closed forms of such
 faces and faces that lie apart; h itself, its rate and its smallest value are in faces/film_thickness.py.
@@ -44,7 +44,7 @@ INNER_RADIUS, OUTER_RADIUS, CLEARANCE, CONING, FLOOR, TILT_AT_MEAN, PLANAR, TOUC
 # The profile: how many radii (0: none), and room for the radii and the depths.
 PROFILE, PROFILE_RADII = 11, 12
 PROFILE_DEPTHS = PROFILE_RADII + MOST_NODES
-# The waves (faces/waviness.py): how many (0: none), how many different orders, room for these, and a row per wave.
+# The waves (faces/film_thickness.py): how many (0: none), how many different orders, room for these, a row per wave.
 WAVES = PROFILE_DEPTHS + MOST_NODES
 ORDERS, ORDER_LIST = WAVES + 1, WAVES + 2
 WAVE_ROWS, WAVE_ROW = ORDER_LIST + MOST_WAVES, 5
@@ -56,7 +56,7 @@ def face_parameters(film, clearance: float) -> np.ndarray:
     clearance in m, coning in rad, the floor of the film thickness in m, two flags, the thickness at which the faces
     touch and the one at which the run ends (m), half the height of the asperities (m, 0: smooth) and where they stand
     on plateaus the film between these (m), the profile (m); with
-    contact these are laid by faces/contact.py, and faces/waviness.py lays the waves."""
+    contact these are laid by faces/contact.py, and faces/film_thickness.py lays the waves."""
     f = np.zeros(FACE_SIZE)
     f[:PROFILE] = (
         film.inner_radius,

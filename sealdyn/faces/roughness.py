@@ -22,7 +22,7 @@ from functools import lru_cache
 import numpy as np
 
 from ..numerics.kernel import inner_kernel
-from ..scene.contact import HALF_HEIGHT, REACH
+from ..scene.forces import HALF_HEIGHT, REACH
 
 # A series in a block: degree of Q, its coefficients (room for DEGREE), and four of the continuation.
 DEGREE = 16

@@ -53,7 +53,7 @@ def _module(name: str):
     """The file of a film, or the `__init__` of its folder, which offers it before all of it is loaded.  Raises
     SceneError."""
     if name in own_film_names():
-        return importlib.import_module(f"{__name__}.{name}")
+        return _own_module(name)
     try:
         module = outside_module("films", name, "FILM", "OFFER")
     except OutsideError as error:
@@ -61,6 +61,11 @@ def _module(name: str):
     if (called := getattr(module, "FILM", None) or module.OFFER).name != name:
         raise SceneError("film.model", f'"{name}", whose FILM is called "{called.name}"', f'name="{name}" in its file')
     return module
+
+
+@cache
+def _own_module(name: str):
+    return importlib.import_module(f"{__name__}.{name}")
 
 
 def _film(name: str) -> Film:

@@ -7,7 +7,7 @@ the user's own.  The term with the mean spin wm is the wedge (half-speed entrain
 destabilising one.  Green's stiffness follows the pressure drop and his damping the viscosity, so both
 follow tables over time; the user's own numbers stay as given.
 **Valid** small motion: |g| r_o and dz well below the clearance; then it costs nothing.
-Leakage and drag are those of the narrow seal at the tilted and wavy film (_narrow_seal.py).
+Leakage and drag are those of the narrow seal at the tilted and wavy film (_line_laws.py).
 """
 
 import numpy as np
@@ -38,7 +38,7 @@ from ..numerics.kernel import value_kernel
 from ..numerics.piecewise_linear import initially
 from ..scene.film import Coefficients, coning_varies
 from ._contract import Film
-from ._narrow_seal import narrow_seal, normal_conditions
+from ._line_laws import narrow_seal, normal_conditions
 
 
 def accepts(film, waves=()) -> str:

@@ -45,7 +45,7 @@ from ..numerics.piecewise_linear import initially
 from ..scene.film import coning_varies
 from ..scene.tabulated import leakage_grid, tabulated_grid
 from ._contract import Film
-from ._narrow_seal import narrow_seal, normal_conditions
+from ._line_laws import narrow_seal, normal_conditions
 
 # Block after the faces: numbers of clearances, of speeds, of clearances and of pressure differences of the leakage
 # (0: the narrow seal's); opening force per inner and outer pressure (m^2) and beside both (N); of a gas normal

@@ -1,5 +1,7 @@
-"""SIGINT, SIGTERM and SIGHUP end a command within GRACE: in order where that can be, else at once.
+"""SIGINT, SIGTERM, SIGHUP and SIGXCPU (`ulimit -t`): while the program is still being loaded one line and exit code
+130; later they end a command within GRACE, in order where that can be, else at once.
 
+The package imports this before all else, so nothing is imported here that takes time.
 Python hears a signal only between two of its own instructions, and compiled code, compilers and libraries keep it
 waiting; what they call back may even swallow the KeyboardInterrupt.  So a thread watches what the system's handler
 writes as the signal comes, and ends the process when its time is up.  What is then on disk is what a killed process
@@ -8,14 +10,38 @@ leaves, and archives and journals are made for that.
 
 import os
 import signal
-import socket
 import sys
 from contextlib import contextmanager
 from functools import cache
 from threading import Thread, current_thread, main_thread
 
-from .. import first_moments
-from ..first_moments import CODE, SIGNALS
+SIGNALS = (signal.SIGINT, signal.SIGTERM, *(getattr(signal, n) for n in ("SIGHUP", "SIGXCPU") if hasattr(signal, n)))
+CODE = 130
+_SAID = "interrupted: nothing is kept"
+
+
+def is_the_program() -> bool:
+    """Whether this process is the command, `sealdyn` or `python -m sealdyn.cli`, and not one that uses the package."""
+    as_module = {"-m", "sealdyn.cli"} <= set(sys.orig_argv)
+    return as_module or os.path.splitext(os.path.basename(sys.argv[0] if sys.argv else ""))[0] == "sealdyn"
+
+
+def hear() -> None:
+    """From now on each of the signals ends the process; SIGHUP not where it is ignored (nohup)."""
+    for number in SIGNALS:
+        if signal.getsignal(number) != signal.SIG_IGN or number in SIGNALS[:2]:
+            signal.signal(number, end)
+
+
+def end(number, frame) -> None:
+    """End the process, and say so; past Python's own streams, and with nothing imported."""
+    try:
+        os.write(2, f"{_SAID}\n".encode())
+        if "--json" in sys.argv:
+            os.write(1, f'{{"status": "interrupted", "message": "{_SAID}"}}\n'.encode())
+    finally:
+        os._exit(CODE)
+
 
 # Seconds from the signal to the end.
 GRACE = 1.5
@@ -33,6 +59,9 @@ class Interruption:
     def __enter__(self):
         self.asked, self.last_words, self._looking = [], None, False
         if current_thread() is main_thread():
+            # Takes time to load, and the first moments of a process need none.
+            import socket
+
             ours, theirs = self._wire = socket.socketpair()
             theirs.setblocking(False)
             self._wakeup = signal.set_wakeup_fd(theirs.fileno(), warn_on_full_buffer=False)
@@ -68,7 +97,7 @@ class Interruption:
         """The handler that is put back in the end; those of the first moments have had theirs."""
         before = signal.signal(number, self._hear)
         default = signal.default_int_handler if number == signal.SIGINT else signal.SIG_DFL
-        return default if before is first_moments.end else before
+        return default if before is end else before
 
     def _hear(self, number, frame):
         if not self.asked:

@@ -142,13 +142,6 @@ def largest_eccentricity(followers, shaft, speed: float) -> float:
     return left / per_metre if per_metre else math.inf
 
 
-def riding_speeds(stiffness: float, mass: float, preload: float, eccentricity: float) -> tuple[float, float]:
-    """Speeds (rad/s) between which an undamped follower without friction rides: m w^2 = k -+ preload / e; the lower one
-    is 0 where it rides at rest."""
-    low, high = stiffness - preload / eccentricity, stiffness + preload / eccentricity
-    return math.sqrt(max(low, 0.0) / mass), math.sqrt(high / mass)
-
-
 def hangs_up(followers) -> bool:
     """Whether the friction of the flange holds a follower that nothing but its preload moves: P <= F."""
     return 0.0 < followers.friction >= followers.preload

@@ -21,8 +21,7 @@ from ..dynamics.native import ARRAYS, BLOCK, Native
 from ..scene.radial import RadialScene
 from ..scene.scene import SceneError
 from . import equations
-from .contact import Contacts
-from .equations import RIDING
+from .equations import RIDING, Contacts
 from .followers import followers_of
 from .observers import Watch
 

@@ -11,7 +11,7 @@ from ..archive import Fields, Series
 from ..dynamics.intervals import constant_and_slope, modulo_turn
 from ..quantities import everyday, quantity
 from ..solvers.contract import Status
-from ..solvers.energy_audit import missing_energy
+from ..solvers.run_error import missing_energy
 from .equations import HELD, RIDING
 from .followers import fastest, hangs_up, largest_eccentricity, needed_preload
 

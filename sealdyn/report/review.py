@@ -178,7 +178,7 @@ def _asked(info: dict) -> dict:
 def _drawn(path: Path, chart: str) -> tuple[str, str]:
     """A chart as it stands in the page, and its axes."""
     # With matplotlib, only where something is drawn.
-    from .charts.live_figure import svg_of
+    from .charts.page import svg_of
 
     return svg_of(importlib.import_module(f"{__package__}.{chart}").draw(path, None))
 

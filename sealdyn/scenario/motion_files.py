@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, get_args, get_type_hints
 
 from ..scene.excitation import ACCELERATIONS, MOTION_COLUMNS
-from ..scene.loads import LOAD_COLUMNS
+from ..scene.forces import LOAD_COLUMNS
 from ..scene.tabulated import COLUMNS, Tabulated
 from ..units import (
     MOST_LISTED,

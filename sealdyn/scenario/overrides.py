@@ -12,7 +12,7 @@ import numpy as np
 
 from .. import __version__
 from ..answers import toml_line
-from ..scene.variants import ALTERNATIVES
+from ..scene.scene import ALTERNATIVES
 from ..units import Length, QuantityError, quoted
 from .errors import ScenarioError, diameters, refuse_unbounded, refuse_unreadable, table_in, tables, without_indices
 

@@ -18,7 +18,7 @@ from pydantic.errors import PydanticUserError
 from ..extensions import OUTSIDE, OutsideError, digest, in_folders, installed, outside_module
 from ..films import own_film_names
 from ..scene.film import Film
-from ..scene.loads import Load
+from ..scene.forces import Load
 from ..scene.rings import Rotor, Stator
 from .errors import ScenarioError, expected_of, table_in
 

@@ -17,7 +17,7 @@ from ..answers import toml_text
 from ..extensions import OUTSIDE, OutsideError, digest, use
 from ..films import own_film_names
 from ..numerics.piecewise_linear import PiecewiseLinear
-from ..scene import variants
+from ..scene import scene as scenes
 from ..scene.application import Application, RadialApplication
 from ..scene.checks import unused
 from ..scene.radial import RadialScene
@@ -98,14 +98,14 @@ class Scenario:
         object.__setattr__(self, "read", now)
 
     def __repr__(self) -> str:
-        from ..report.notebook import shortened
+        from ..report.in_python import shortened
         from ..report.text import question_of
 
         keys = [line for line in self.to_toml().splitlines() if line.strip() and not line.startswith("#")]
         return shortened([f"Scenario {self.name}: {' '.join(question_of(self.question).split())}", *keys])
 
     def _repr_html_(self) -> str:
-        from ..report.notebook import keys_html
+        from ..report.in_python import keys_html
 
         return keys_html(self.to_dict(), f"{self.name}: {self.question}")
 
@@ -385,7 +385,7 @@ def with_values(scenario: Scenario, values: dict[str, Any]) -> Scenario:
         value = value_of(value) if isinstance(value, str) else value
         set_value(tables, key, value, name)
         table, _, last = key.rpartition(".")
-        gone = {key, *(f"{table}.{other}" for other in variants.ALTERNATIVES.get(last, ()))}
+        gone = {key, *(f"{table}.{other}" for other in scenes.ALTERNATIVES.get(last, ()))}
         given = {k for k in given if k not in gone and not k.startswith(f"{key}.")}
         given |= {*given_keys({key: as_written(value)}, kind=kind_of(tables, name))}
     told = {key: value_of(value) for key, value in values.items() if isinstance(value, str)}

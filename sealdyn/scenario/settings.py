@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
-from ..scene import variants
+from ..scene import scene as scenes
 from ..scene.checks import check_scene
 from ..scene.scene import SceneError
 from ..unit_names import dimension_and_factor
@@ -133,15 +133,15 @@ def _plain(words: str):
 
 
 def without(scenario: Scenario, what) -> tuple[Scenario, list[str]]:
-    """The scenario without `what`, names of variants.LEFT_OUT ("contact" leaves the film alone), and the names of the
+    """The scenario without `what`, names of scenes.LEFT_OUT ("contact" leaves the film alone), and the names of the
     tables that were left out.  Raises ScenarioError for another name, and if no scene can be so."""
     for word in what:
-        if word not in variants.LEFT_OUT:
-            raise ScenarioError(scenario.name, "--without", f'"{word}"', " or ".join(variants.LEFT_OUT))
-    names = variants.tables_of(scenario.scene, what)
+        if word not in scenes.LEFT_OUT:
+            raise ScenarioError(scenario.name, "--without", f'"{word}"', " or ".join(scenes.LEFT_OUT))
+    names = scenes.tables_of(scenario.scene, what)
     if not names:
         return scenario, []
-    scene = variants.without(scenario.scene, what)
+    scene = scenes.without(scenario.scene, what)
     try:
         check_scene(scene, scenario.run)
     except SceneError as error:
@@ -185,7 +185,7 @@ def si_unit(scene, key: str) -> str:
     """SI unit of the quantity at a dotted key of a scene, "SI" if it has none.  Raises AttributeError or KeyError for a
     key that there is not."""
     owner, _, name = key.rpartition(".")
-    kind = typing.get_type_hints(type(variants.part(scene, owner)), include_extras=True)[name]
+    kind = typing.get_type_hints(type(scenes.part(scene, owner)), include_extras=True)[name]
     held = quantity_of(kind)
     return held.unit if held else "SI"
 
@@ -205,10 +205,10 @@ def must_be_number(scenario: Scenario, key: str, where: str) -> None:
     number."""
     try:
         si_unit(scenario.scene, key)
-        odd = isinstance(variants.part(scenario.scene, key), str | bool | tuple | list | dict)
+        odd = isinstance(scenes.part(scenario.scene, key), str | bool | tuple | list | dict)
     except (AttributeError, KeyError, IndexError, TypeError, ValueError):
         odd = True
-    if odd or dataclasses.is_dataclass(variants.part(scenario.scene, key)):
+    if odd or dataclasses.is_dataclass(scenes.part(scenario.scene, key)):
         hint = "" if key in scenario.given else nearest_of(key, scenario.given)
         raise ScenarioError(scenario.name, where, quoted(key), f"the key of a number of the scene{hint}")
 

@@ -19,7 +19,7 @@ from ..scene.application import Application, RadialApplication, application_erro
 from ..scene.checks import scene_errors
 from ..scene.excitation import Motion
 from ..scene.film import Film
-from ..scene.loads import Load
+from ..scene.forces import Load
 from ..scene.radial import RADIAL, RadialScene, radial_errors
 from ..scene.rings import INERTIAL, RING_NAMES, with_inertia
 from ..scene.scene import Scene, SceneError

@@ -6,16 +6,21 @@ from dataclasses import fields
 
 from ..numerics.piecewise_linear import PiecewiseLinear, initially, points
 from ..units import Temperature, Viscosity
-from .contact import contact_errors, contact_thresholds, film_in_words, limit_in_words
 from .excitation import ACCELERATIONS, MOTION_COLUMNS, acceleration_errors, random_errors, sample_errors
 from .film import Film, aligned_gaps, coned, follows_speed, pads_errors, profile_errors, reynolds_errors
-from .gas import GASES, gas_of
-from .liquid import heat_errors, liquid_errors
-from .loads import LOAD_COLUMNS, Load
+from .fluid import GASES, gas_of, heat_errors, liquid_errors
+from .forces import (
+    LOAD_COLUMNS,
+    Load,
+    contact_errors,
+    contact_thresholds,
+    film_in_words,
+    limit_in_words,
+    secondary_seal_errors,
+)
 from .patterns import grooves_errors, grooves_of, waves_of, waviness_errors
 from .rings import RING_NAMES, body_errors, elastic_errors
 from .scene import SceneError
-from .secondary_seal import secondary_seal_errors
 from .sweep import sweep_errors
 from .tabulated import tabulated_errors
 

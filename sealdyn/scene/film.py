@@ -41,8 +41,7 @@ from ..units import (
     Viscosity,
 )
 from . import Strict
-from .gas import Gas, GasDam, GasName, GasReynolds
-from .liquid import Heat, Liquid, LiquidName
+from .fluid import Gas, GasDam, GasName, GasReynolds, Heat, Liquid, LiquidName
 from .tabulated import Tabulated
 
 PressureDifference = Annotated[float, Quantity("pressure difference", "Pa", '"10 bar"', (), 0,

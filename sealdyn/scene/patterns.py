@@ -18,8 +18,7 @@ from typing import Literal
 from ..numerics.piecewise_linear import points
 from ..units import Angle, Height, Length, Radius
 from . import Strict
-from .contact import contact_errors, contact_thresholds
-from .loads import load_of, turns_over
+from .forces import contact_errors, contact_thresholds, load_of, turns_over
 
 # Most waves of both faces together: kernels keep room for them.
 MOST_WAVES = 16

@@ -29,10 +29,9 @@ from ..units import (
     Varying,
 )
 from . import Strict
-from .liquid import ThermalConductivity
-from .loads import Load
+from .fluid import ThermalConductivity
+from .forces import Load, SecondarySeal
 from .patterns import Grooves, Waviness
-from .secondary_seal import SecondarySeal
 
 Expansion = Annotated[float, Quantity("thermal expansion", "1/K", '"4.5e-6 1/K"', (), 0, True,
     usual=Usual(1e-7, 1e-3, "um/(m*K)"))]  # fmt: skip

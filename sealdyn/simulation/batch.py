@@ -45,10 +45,9 @@ from threading import Event, Thread
 
 import numpy as np
 
-from ..dynamics.contact_events import ROW
 from ..dynamics.extrema import slack, watched_level
 from ..dynamics.native import thinnest_value
-from ..dynamics.tally import Tally
+from ..dynamics.tally import ROW, Tally
 from ..solvers.contract import MOST_ORDERS, Cause, Counts, tolerance_for
 from ..solvers.integrate import STIFF, Outcome
 from ..solvers.methods import looped

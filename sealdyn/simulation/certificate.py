@@ -1,6 +1,6 @@
 """What tolerance a run needs, and how wrong it is.
 
-A run of constant conditions is followed by solvers/global_error.py to its end.  Its first stretch is done on trial with
+A run of constant conditions is followed by solvers/run_error.py to its end.  Its first stretch is done on trial with
 a loose tolerance: if that errs little enough the run goes on from there, else it starts again with a tolerance sharper
 in proportion.  Any other run has the cautious tolerance of solvers/contract.py, and is done once more, sharper
 (verification_run.py); where the two differ by too much it starts again.
@@ -16,10 +16,9 @@ import numpy as np
 from ..dynamics.run_state import RunState
 from ..scene.radial import RadialScene
 from ..solvers.contract import BETWEEN, TIGHTEST, Block, Cause, Counts, Enough, SolverFailure, Status, tolerance_for
-from ..solvers.energy_audit import EnergyAudit, missing_energy
-from ..solvers.global_error import GlobalErrorEstimate
 from ..solvers.integrate import COMPILED, Advance, Outcome
 from ..solvers.methods import METHODS
+from ..solvers.run_error import EnergyAudit, GlobalErrorEstimate, missing_energy
 from .film_error import cell_error, model_error
 from .selection import Plan, choose_method
 from .verification_run import EXPLICIT, LEAST_SHARPER, OTHER, UNBOUNDED, Comparison, ErrorScales, budget

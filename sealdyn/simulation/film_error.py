@@ -35,8 +35,7 @@ from ..films import film_named, limits
 from ..numerics.piecewise_linear import initially
 from ..scene.film import Reynolds
 from ..scene.patterns import waves_of
-from ..scene.scene import SceneError
-from ..scene.variants import seals_that_stick
+from ..scene.scene import SceneError, seals_that_stick
 from .verification_run import ErrorScales
 
 # Steps along which the defect is followed: per fastest period, at once, and in all; points of a steady period.

@@ -10,7 +10,7 @@ from ..dynamics.warm_state import Warming, WarmState, warming
 from ..numerics.piecewise_linear import initially
 from ..quantities import in_words
 from ..scene.film import aligned_gaps, coned
-from ..scene.liquid import liquid_of
+from ..scene.fluid import liquid_of
 
 # The hottest place of a face is warmer than its mean by up to this factor.
 HOTTEST = 1.55

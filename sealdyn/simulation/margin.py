@@ -11,7 +11,7 @@ from ..dynamics.interface import flow_at_rest, opening_parts
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
 from ..faces.geometry import CONTACT_TORQUE, FLOW_INNER, INNER_PRESSURE, OUTER_PRESSURE, SPIN_DIFFERENCE, TORQUE, TOUCH
-from ..scene import variants
+from ..scene import scene as scenes
 from ..scene.patterns import waves_of
 from ..scene.rings import SMALL_TILT
 from .plausibility import room_to_open
@@ -149,7 +149,7 @@ def touching_when_aligned(scene, rough: float) -> dict | None:
     and what asperities carry (N); None if they do not."""
     if not rough:
         return None
-    scene = variants.frozen_at_start(scene)
+    scene = scenes.frozen_at_start(scene)
     model = Model(scene)
     scene, film = model.scene, model.scene.film
     thinnest, radius = min((h, r) for r, h in model.aligned_gaps())
@@ -162,7 +162,7 @@ def touching_when_aligned(scene, rough: float) -> dict | None:
 
 def times_own(scene, key: str, value: float) -> float | None:
     """The value of a key over the scene's own; None where that is zero, or no number."""
-    own = variants.part(variants.frozen_at_start(scene), key)
+    own = scenes.part(scenes.frozen_at_start(scene), key)
     return abs(value / own) if isinstance(own, int | float) and own else None
 
 
@@ -203,7 +203,7 @@ def linear_film(model) -> tuple[float, float]:
 def linear_films(scene, key: str, rough: float, own) -> dict:
     """Of a seal that linear theory never sees touch: the clearance (m), and `linear`, the films (m) that it sees over
     the key, to ten times the value of the scene `own`, or 10 mrad where it has none."""
-    value = variants.part(variants.frozen_at_start(own), key)
+    value = scenes.part(scenes.frozen_at_start(own), key)
     value = abs(value) if isinstance(value, int | float) and value else None
     forcing = np.linspace(0.0, 10.0 * value if value else 1e-2, 11).tolist()
     films = [linear_film(Model(scene(v), 1e-6))[0] for v in forcing]

@@ -20,12 +20,11 @@ from ..scenario.errors import tables, without_indices
 from ..scenario.overrides import radius_key
 from ..scenario.reader import Scenario
 from ..scenario.tables import kind_of_scene
-from ..scene.contact import HALF_HEIGHT
 from ..scene.film import Coefficients
-from ..scene.gas import GasDam, density_of, gas_of, highest_density, viscosity_of
+from ..scene.fluid import GasDam, density_of, gas_of, highest_density, viscosity_of
+from ..scene.forces import HALF_HEIGHT
 from ..scene.radial import RadialScene
-from ..scene.scene import SceneError
-from ..scene.variants import part
+from ..scene.scene import SceneError, part
 from ..units import SECONDS, Quantity, SampleTime, Usual, quantity_of
 from .film_error import TORN, reynolds_comparison
 

@@ -20,7 +20,7 @@ from ..kernel_cache import solvers_digest
 if TYPE_CHECKING:
     import xarray
 
-    from ..report.plot import Plot
+    from ..report.in_python import Plot
 import math
 from enum import StrEnum
 
@@ -79,17 +79,17 @@ class Result:
     @property
     def plot(self) -> Plot:
         """Its figures: `overview()`, `orbit()`, `film()`, `spectrum()`, `poincare()`."""
-        from ..report.plot import Plot
+        from ..report.in_python import Plot
 
         return Plot(self._at_hand)
 
     def __repr__(self) -> str:
-        from ..report.notebook import run_repr
+        from ..report.in_python import run_repr
 
         return run_repr(self.summary)
 
     def _repr_html_(self) -> str:
-        from ..report.notebook import run_html
+        from ..report.in_python import run_html
 
         return run_html(self.summary)
 

@@ -14,7 +14,7 @@ from ..dynamics.swept_motion import COARSE, PER_PERIOD, splines
 from ..faces.geometry import COLLAPSE, DZ, FLOOR
 from ..scenario.reader import Scenario
 from ..scenario.tables import Run
-from ..scene.gas import viscosity_of
+from ..scene.fluid import viscosity_of
 from ..scene.patterns import EVEN, grooves_of
 from ..scene.radial import RadialScene
 from ..scene.rings import RING_NAMES

@@ -19,7 +19,7 @@ from ..dynamics.signals import (
 from ..quantities import everyday
 from ..scene.radial import RadialScene
 from ..solvers.contract import Enough
-from ..solvers.energy_audit import EnergyAudit
+from ..solvers.run_error import EnergyAudit
 
 # Single events kept in an archive; a seal that rubs for hours has more, which are counted.
 MOST_EVENTS = 20_000

@@ -12,8 +12,7 @@ from ..dynamics.model import Model
 from ..dynamics.stability_thresholds import neutral_speeds
 from ..scene.patterns import grooves_of, waves_of
 from ..scene.rings import ROTOR, STATOR
-from ..scene.scene import SceneError
-from ..scene.variants import uneven_supports
+from ..scene.scene import SceneError, uneven_supports
 
 # Speed (m/s) of the outer edge of a face beyond which there is none: rings burst at some hundreds.
 FASTEST = 1000.0

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from ..dynamics.extrema import H, empty_records
-from ..dynamics.from_outside import CARRIERS, KINDS, Held, imposed_on
+from ..dynamics.imposed_motion import CARRIERS, KINDS, Held, imposed_on
 from ..dynamics.intervals import LONGEST, Interval, angle_turned
 from ..dynamics.run_state import RunState
 from ..dynamics.signals import samples, series_of, signal_table
@@ -123,7 +123,7 @@ class Simulation:
         return f"Simulation {self.name}: {self.method}, t = {self.time:g} s, h_min = {state['h_min']:.4g} m"
 
     def _repr_html_(self) -> str:
-        from ..report.notebook import html_table
+        from ..report.in_python import html_table
 
         units, state = self.units, self.state
         rows = [(name, f"{value:.6g}", units[name]) for name, value in state.items()]

@@ -13,13 +13,13 @@ from ..dynamics.intervals import constant_and_slope
 from ..dynamics.run_state import Caution, Concern
 from ..faces.geometry import TOUCH
 from ..numerics.piecewise_linear import PiecewiseLinear
-from ..scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE, density_of, gas_of
-from ..scene.loads import load_of
+from ..scene.fluid import NORMAL_PRESSURE, NORMAL_TEMPERATURE, density_of, gas_of
+from ..scene.forces import load_of
 from ..scene.radial import RadialScene
 from ..scene.rings import RING_NAMES, ROTOR, STATOR
-from ..scene.variants import uneven_supports
+from ..scene.scene import uneven_supports
 from ..solvers.contract import Status
-from ..solvers.energy_audit import missing_energy
+from ..solvers.run_error import missing_energy
 from .margin import aligned_flow, contact_margin, state_at_rest, steady_extremes
 from .plausibility import cautions, unit_warnings
 from .stability import found_alone, no_stability, stability

@@ -15,7 +15,7 @@ from ..dynamics.signals import samples
 from ..dynamics.swept_motion import splines
 from ..faces.geometry import FLOW_INNER, FORCE, INNER_PRESSURE, MOMENT_X, MOMENT_Y, OUTER_PRESSURE, TORQUE
 from ..numerics.piecewise_linear import initially
-from ..scene.gas import density_of, gas_of
+from ..scene.fluid import density_of, gas_of
 from ..scene.scene import SceneError
 from ..solvers.contract import TIGHTEST, Cause, Counts, Enough, Status, attainable, tolerance_for
 from ..solvers.integrate import COMPILED, solve

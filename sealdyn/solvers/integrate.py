@@ -27,8 +27,8 @@ from .contract import (
     TooDear,
     tolerance_for,
 )
-from .energy_audit import EnergyAudit
 from .methods import METHODS
+from .run_error import EnergyAudit
 
 # A run that does not get on ends (Advance): so many accepted steps, or changes of the equations, must bring it on by
 # this share of what it has before it.

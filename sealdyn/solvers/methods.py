@@ -115,14 +115,14 @@ def _back_end(segment, counts, form):
 
 def _trbdf2(*given):
     """TR-BDF2, loaded where it is used: for cells that tear and fill."""
-    from .trbdf2 import trbdf2
+    from .own_methods import trbdf2
 
     return trbdf2(*given)
 
 
 def _expm(*given):
     """The matrix exponential, loaded where it is used: for linear scenes."""
-    from .matrix_exponential import expm
+    from .own_methods import expm
 
     return expm(*given)
 

@@ -14,9 +14,8 @@ from ..numerics.piecewise_linear import initially
 from ..quantities import in_words
 from ..scenario.settings import values_in_si
 from ..scene.film import coned
-from ..scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE, density_of
-from ..scene.scene import SceneError
-from ..scene.variants import frozen_at_start
+from ..scene.fluid import NORMAL_PRESSURE, NORMAL_TEMPERATURE, density_of
+from ..scene.scene import SceneError, frozen_at_start
 from ._grooved_roots import MOTIONS, lands, modes, refuse_touching, rings_of
 
 ERRORS = ("film_force", "leakage", "torque", "axial_stiffness", "tilt_stiffness")

@@ -18,10 +18,9 @@ from ..films._grooved.aligned import MANY, AlignedFilm, aligned_film, axial_stif
 from ..films._grooved.motion import Motion, Ring, axial_law, coupled_law, root_near, tilt_law, unstable_roots
 from ..numerics.piecewise_linear import initially
 from ..quantities import in_words
-from ..scene.contact import touch_height
 from ..scene.film import aligned_gaps, coned
-from ..scene.scene import Closing, Scene, SceneError
-from ..scene.variants import frozen_at_start, refuse_uneven
+from ..scene.forces import touch_height
+from ..scene.scene import Closing, Scene, SceneError, frozen_at_start, refuse_uneven
 from ..simulation.stability import FASTEST
 
 # Speeds between two of which one has more roots that grow.

@@ -28,7 +28,7 @@ from ..scenario.overrides import radius_key, without_arrays
 from ..scenario.reader import Scenario, scenario_of
 from ..scenario.settings import bare_settings, study_settings, without, written_settings
 from ..scenario.tables import kind_of_scene
-from ..scene import variants
+from ..scene import scene as scenes
 from ..scene.patterns import face_orders, faces_tilt, grooves_of, waves_of
 from ..scene.radial import RadialScene
 from ..scene.scene import SceneError
@@ -161,7 +161,7 @@ def run_study(
     springs = []
     if not _is_radial(scenario.scene):
         if "secondary-seal" in info.refuses:
-            scene, springs = variants.with_springs_for_seals(studied.scene)
+            scene, springs = scenes.with_springs_for_seals(studied.scene)
             studied = replace(studied, scene=scene, read=None)
         _refuse(name, studied.scene, info.refuses)
     settings = study_settings(scenario, name, module.Settings, flags or {})
@@ -187,7 +187,7 @@ def run_study(
         if info.aligned and not _is_radial(studied.scene) and (askew := _moment(studied.scene)):
             notes.append(f"The numbers are of aligned faces, which do not stay so: {askew}.")
         for key in springs:
-            seal = variants.part(scenario.scene, key)
+            seal = scenes.part(scenario.scene, key)
             stiffness, reach = in_words("axial_stiffness", seal.springs()[0]), in_words("travel", seal.reach())
             notes.append(f"[{key}] is a spring of {stiffness}, as in small motion: from {reach} on it slides.")
         if left_out:
@@ -238,7 +238,7 @@ def _key_of_pattern(scene) -> str:
 def _refuse(name: str, scene, refused):
     """Raises SceneError for what the study `name` cannot reckon with."""
     study, way = name.replace("_", "-"), "{} left out (--without {})"
-    if "secondary-seal" in refused and (seals := variants.seals_that_stick(scene)):
+    if "secondary-seal" in refused and (seals := scenes.seals_that_stick(scene)):
         found = f"a ring that its secondary seal holds in small motion, of which {study} asks"
         raise SceneError(seals[0], found, way.format("the seal", "secondary-seal"))
     if "contact" in refused and scene.contact:
@@ -302,12 +302,12 @@ class Answer:
         return answer_as_dataset(self.answer, info.units, info.along)
 
     def __repr__(self) -> str:
-        from ..report.notebook import study_repr
+        from ..report.in_python import study_repr
 
         return study_repr(self.study, self.answer)
 
     def _repr_html_(self) -> str:
-        from ..report.notebook import study_html
+        from ..report.in_python import study_html
 
         return study_html(self.answer)
 

@@ -12,7 +12,7 @@ from ..answers import CYCLE, Answer, Axis, Level, Panel, Series, Table
 from ..dynamics.model import Model
 from ..quantities import in_words, reading_in
 from ..scene.patterns import grooves_of
-from ..scene.variants import frozen_at_start
+from ..scene.scene import frozen_at_start
 from ..simulation.stability import held_speeds
 from ..units import Speed
 from . import Info

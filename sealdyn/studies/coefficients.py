@@ -15,10 +15,9 @@ from ..quantities import in_words
 from ..scenario.errors import ScenarioError
 from ..scenario.settings import Words, values_in_si
 from ..scene.patterns import grooves_of, waves_of
-from ..scene.scene import SceneError
+from ..scene.scene import SceneError, frozen_at_start, tilting
 from ..scene.tabulated import ELEMENTS as NAMES
 from ..scene.tabulated import ORDER
-from ..scene.variants import frozen_at_start, tilting
 from ..simulation.film_error import steady_tilt
 from ..units import Angle, Length, Speed, Tilt
 from . import Info

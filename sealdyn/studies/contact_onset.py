@@ -19,9 +19,9 @@ from ..quantities import in_words
 from ..scenario.errors import ScenarioError
 from ..scenario.reader import with_values
 from ..scenario.settings import must_be_number, si_unit
-from ..scene import variants
+from ..scene import scene as scenes
 from ..scene.checks import unused
-from ..scene.contact import touch_height
+from ..scene.forces import touch_height
 from ..scene.rings import SMALL_TILT
 from ..scene.scene import SceneError
 from ..simulation.margin import NoOnset, limit_of_forcing, linear_films, linear_onset, times_own, touching_when_aligned
@@ -127,7 +127,7 @@ def acting(scene) -> list[str]:
     keys = ["rotor.misalignment" if scene.rotor.support else "rotor.runout", "stator.misalignment"]
     if not scene.stator.support:
         keys.reverse()
-    return sorted(keys, key=lambda key: not any(points(variants.part(scene, key))))
+    return sorted(keys, key=lambda key: not any(points(scenes.part(scene, key))))
 
 
 def brief(row: dict) -> dict:
@@ -150,7 +150,7 @@ def onset(scenario, point: dict) -> dict:
     def scene(value):
         # Until asperities meet the film is alone.
         given = with_values(scenario, {key: value, "film.floor": floor, "run.start": "steady"}).scene
-        return variants.with_values(given, {"contact": None})
+        return scenes.with_values(given, {"contact": None})
 
     try:
         formula, touching = linear_onset(scene, key, rough)
@@ -196,7 +196,7 @@ def onset(scenario, point: dict) -> dict:
         lowest = min(float(film.inner_pressure), float(film.outer_pressure))
 
         def floored(value):
-            return variants.with_values(scene(value), {"film.cavitation_pressure": lowest})
+            return scenes.with_values(scene(value), {"film.cavitation_pressure": lowest})
 
         with_floor = Follower(floored, point["margin"], 1e-4, follower.monodromy, follower.start, rough)
         result["nonlinear"] = with_floor.close(value, 1e-4)

@@ -26,8 +26,7 @@ from ..dynamics.run_state import RunState
 from ..numerics.piecewise_linear import initially
 from ..quantities import in_words
 from ..scene.patterns import grooves_of
-from ..scene.scene import Closing
-from ..scene.variants import frozen_at_start, uneven_supports, with_values
+from ..scene.scene import Closing, frozen_at_start, uneven_supports, with_values
 from ..simulation.selection import choose_method
 from ..simulation.stability import (
     FASTEST,

@@ -21,12 +21,11 @@ from ..dynamics.elastic_ring import (
 )
 from ..dynamics.warm_state import at_work
 from ..faces import contact
+from ..faces.film_thickness import lay_waves
 from ..faces.geometry import CLEARANCE, CONTACT_FORCE, DZ, FORCE
-from ..faces.waviness import lay_waves
 from ..numerics.piecewise_linear import initially
 from ..quantities import in_words
-from ..scene.scene import Scene, SceneError
-from ..scene.variants import frozen_at_start
+from ..scene.scene import Scene, SceneError, frozen_at_start
 from ..units import Length, Time
 from . import Info
 

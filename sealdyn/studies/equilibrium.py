@@ -25,10 +25,9 @@ from ..faces.geometry import CAVITATED, CONTACT_PRESSURE, CONTACT_TORQUE, FLOW_I
 from ..numerics.piecewise_linear import initially
 from ..quantities import in_words, resolved
 from ..scene.film import coned
-from ..scene.gas import density_of
+from ..scene.fluid import density_of
 from ..scene.patterns import grooves_of, waves_of
-from ..scene.scene import Closing, SceneError
-from ..scene.variants import frozen_at_start
+from ..scene.scene import Closing, SceneError, frozen_at_start
 from ..simulation.heat import heat_of, limits_of, limits_said
 from ..units import Length
 from . import Info

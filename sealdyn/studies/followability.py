@@ -9,7 +9,7 @@ from typing import Annotated
 
 import numpy as np
 
-from ..analysis import radial_rules
+from ..analysis import other_rules
 from ..answers import CYCLE, Answer, Axis, Level, Panel, Series, Table, table_of
 from ..dynamics.intervals import largest_value
 from ..quantities import in_words, number, reading_in
@@ -157,9 +157,9 @@ def guide(scene) -> dict:
     """Rows of the guide's table: `speed` (m/s) over `eccentricity` (m), and what they are; with the fit of 1/e = a + b
     v^2 and what stiffness over preload it would mean."""
     if scene.lip:
-        amounts, speeds, words = radial_rules.LIP_ECCENTRICITY, radial_rules.LIP_SPEED, "table 3.2, offset + runout"
+        amounts, speeds, words = other_rules.LIP_ECCENTRICITY, other_rules.LIP_SPEED, "table 3.2, offset + runout"
     else:
-        amounts, speeds, words = 0.5 * radial_rules.SEGMENT_RUNOUT, radial_rules.SEGMENT_SPEED, "table 3.4, half of TIR"
+        amounts, speeds, words = 0.5 * other_rules.SEGMENT_RUNOUT, other_rules.SEGMENT_SPEED, "table 3.4, half of TIR"
     slope, start = np.polyfit(speeds**2, 1.0 / amounts, 1)
     return {
         "eccentricity": amounts.tolist(), "surface_speed": speeds.tolist(), "words": words,

@@ -10,8 +10,7 @@ from ..quantities import in_words
 from ..scenario.errors import ScenarioError
 from ..scenario.reader import with_values
 from ..scenario.settings import axis, with_own_unit
-from ..scene.scene import SceneError
-from ..scene.variants import frozen_at_start
+from ..scene.scene import SceneError, frozen_at_start
 from . import Info
 from .equilibrium import find, resting, root_row
 from .sweep import along, quantity_along

@@ -19,8 +19,7 @@ from ..dynamics.warm_state import at_work
 from ..quantities import in_words, number
 from ..scene.film import Coefficients
 from ..scene.rings import ROTOR, STATOR
-from ..scene.scene import Closing, SceneError
-from ..scene.variants import refuse_uneven, unforced, with_values
+from ..scene.scene import Closing, SceneError, refuse_uneven, unforced, with_values
 from ..solvers.contract import Counts, SolverFailure, attainable, tolerance_for
 from ..solvers.fixed_step import REFERENCE_METHODS
 from . import Info

@@ -28,9 +28,8 @@ from ..numerics.piecewise_linear import crossing
 from ..quantities import in_words, number, resolved, shown_in
 from ..scenario.errors import ScenarioError, nearest_of
 from ..scenario.overrides import value_of
-from ..scene.gas import density_of
-from ..scene.scene import SceneError
-from ..scene.variants import frozen_at_start, tilting
+from ..scene.fluid import density_of
+from ..scene.scene import SceneError, frozen_at_start, tilting
 from ..units import Angle, Quantity, QuantityError, quoted
 from . import Info
 

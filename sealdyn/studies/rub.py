@@ -28,8 +28,8 @@ from ..numerics.time_series import horizon, tangent_product
 from ..quantities import in_words
 from ..scenario.errors import ScenarioError
 from ..scenario.settings import si_unit, values_in_si
-from ..scene.contact import contact_thresholds
-from ..scene.variants import part, with_values
+from ..scene.forces import contact_thresholds
+from ..scene.scene import part, with_values
 from ..simulation.stability import critical_speed
 from ..status import Status
 from ..units import Speed

@@ -7,8 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from ..analysis.film_balance import FilmBalance
-from ..analysis.harmonic_balance import HarmonicBalance, NotSmooth
+from ..analysis.harmonic_balance import FilmBalance, HarmonicBalance, NotSmooth
 from ..analysis.shooting import ForcedWave, NoOrbit, Orbit, Shooter
 from ..answers import Answer, Axis, Level, Panel, Series, Table, table_of
 from ..dynamics import modes

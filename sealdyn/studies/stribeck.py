@@ -20,8 +20,7 @@ from ..numerics.piecewise_linear import points
 from ..quantities import in_words
 from ..scenario.errors import ScenarioError
 from ..scene.film import Coefficients
-from ..scene.scene import SceneError
-from ..scene.variants import frozen_at_start
+from ..scene.scene import SceneError, frozen_at_start
 from ..units import Speed
 from . import Info
 from .equilibrium import find, root_row

@@ -14,7 +14,7 @@ from ..dynamics.warm_state import warming
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..quantities import in_words
 from ..scenario.errors import ScenarioError
-from ..scene.variants import frozen_at
+from ..scene.scene import frozen_at
 from ..simulation.heat import limits_of, limits_said
 from ..units import Time
 from . import Info

@@ -1,7 +1,7 @@
 """Wave design: how many waves, on how stiff a ring, carry most of the load below a leakage, of those that a pressure
 between two O-rings can bend the ring to and that hold; the fold, and the stiffest ring that still comes there.
 
-One curve of balances for each order of waves answers for all rings (analysis/wave_design.py).
+One curve of balances for each order of waves answers for all rings (dynamics/elastic_ring.py).
 """
 
 from dataclasses import asdict, dataclass, replace
@@ -11,15 +11,13 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
-from ..analysis.wave_design import PLACES, READ, design, joined, stiffest
 from ..answers import CYCLE, Answer, Axis, Level, Panel, Series, Table
-from ..dynamics.elastic_ring import operating_point, order_of, with_cells_of
+from ..dynamics.elastic_ring import PLACES, READ, design, joined, operating_point, order_of, stiffest, with_cells_of
 from ..dynamics.warm_state import at_work
 from ..quantities import in_words
-from ..scene.contact import HALF_HEIGHT
 from ..scene.film import MOST_AROUND
-from ..scene.scene import Scene, SceneError
-from ..scene.variants import frozen_at_start
+from ..scene.forces import HALF_HEIGHT
+from ..scene.scene import Scene, SceneError, frozen_at_start
 from ..units import BendingStiffness, Length, VolumeFlow
 from . import Info
 

@@ -19,10 +19,10 @@ from scipy.sparse.linalg import splu
 
 from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.run_state import RunState
+from sealdyn.faces.film_thickness import lay_waves
 from sealdyn.faces.geometry import DZ
-from sealdyn.faces.waviness import lay_waves
-from sealdyn.films.reynolds import cavitation
 from sealdyn.films.reynolds import film as reynolds
+from sealdyn.films.reynolds import pressure
 from sealdyn.films.reynolds.mesh import films
 from sealdyn.films.reynolds.pressure import lay_out, place, room
 from sealdyn.scenario.reader import parse_scenario
@@ -84,13 +84,13 @@ def still(cells):
     for first in (True, False):
         best, rounds = np.inf, 0
         for _ in range(REPEATS):
-            u = cavitation.unknowns(f)
+            u = pressure.unknowns(f)
             if not first:
                 s[DZ] = 0.0
-                cavitation.solve(f, s, u)
+                pressure.solve(f, s, u)
                 s[DZ] = 0.01 * film.clearance
             begun = time.perf_counter()
-            rounds = cavitation.solve(f, s, u)
+            rounds = pressure.solve(f, s, u)
             best = min(best, time.perf_counter() - begun)
         found.append((best, rounds))
     return found
@@ -99,8 +99,8 @@ def still(cells):
 def sparse(f, s):
     """Seconds of the last linear system by SuperLU, its unknowns in the order of the circle; those of the program's."""
     _, carried, ways, around = films(f, s)
-    nothing, u = np.zeros_like(carried), cavitation.unknowns(f)
-    cavitation.solve(f, s, u)
+    nothing, u = np.zeros_like(carried), pressure.unknowns(f)
+    pressure.solve(f, s, u)
     angles, cells = u.shape
     band, y = room(angles, cells)
     lay_out(f, s, carried, ways, around, u > 0.0, nothing, nothing, band, y)

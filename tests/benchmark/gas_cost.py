@@ -17,7 +17,7 @@ from sealdyn.faces import geometry
 from sealdyn.films import _gas_dam as sector
 from sealdyn.films.gas_dam import film as gas_dam
 from sealdyn.scene.film import Film
-from sealdyn.scene.gas import GasDam
+from sealdyn.scene.fluid import GasDam
 
 COUNT, TIMES = 20_000, 5
 

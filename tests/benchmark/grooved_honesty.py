@@ -27,7 +27,7 @@ from scenes import prepared
 from sealdyn.scene.checks import scene_errors
 from sealdyn.scene.excitation import Shaft
 from sealdyn.scene.film import Film, Reynolds
-from sealdyn.scene.gas import GasReynolds
+from sealdyn.scene.fluid import GasReynolds
 from sealdyn.scene.patterns import Grooves
 from sealdyn.scene.rings import Rotor, Stator, Support
 from sealdyn.scene.scene import Scene, SceneError

@@ -27,7 +27,7 @@ from scenes import prepared, run  # noqa: E402
 import sealdyn  # noqa: E402
 from sealdyn.dynamics.model import Model  # noqa: E402
 from sealdyn.dynamics.segments import Segment  # noqa: E402
-from sealdyn.scene.contact import contact_thresholds  # noqa: E402
+from sealdyn.scene.forces import contact_thresholds  # noqa: E402
 from sealdyn.solvers.contract import SolverFailure  # noqa: E402
 from sealdyn.solvers.methods import METHODS  # noqa: E402
 

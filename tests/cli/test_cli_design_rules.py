@@ -7,7 +7,7 @@ import tomllib
 import pytest
 from command import REFERENCE, SCENARIOS, sealdyn
 
-from sealdyn.analysis import radial_rules
+from sealdyn.analysis import other_rules
 from sealdyn.analysis.design_rules import RULES
 from sealdyn.scenario.reader import parse_scenario, read_scenario
 from sealdyn.studies._runner import study_module
@@ -119,7 +119,7 @@ def test_the_table_changes_no_number_of_a_run(described, tmp_path):
 
 
 def test_every_command_that_a_rule_names_is_one(tmp_path):
-    tables = RULES, radial_rules.LIP, radial_rules.RIBBED_LIP, radial_rules.CIRCUMFERENTIAL
+    tables = RULES, other_rules.LIP, other_rules.RIBBED_LIP, other_rules.CIRCUMFERENTIAL
     named = {rule.command for table in tables for rule in table.values()}
     for program, verb, *rest in map(str.split, named - {""}):
         assert program == "sealdyn" and verb in ("run", "study") and "FILE" in " ".join(rest)

@@ -7,9 +7,10 @@ import pytest
 from scipy.integrate import solve_bvp
 from scipy.optimize import minimize
 
-from sealdyn.closed_form.film import aligned_leakage, aligned_opening_force
-from sealdyn.closed_form.narrow_groove import (
+from sealdyn.closed_form.film import (
     GroovedFace,
+    aligned_leakage,
+    aligned_opening_force,
     groove_coefficients,
     muijderman_number,
     narrow_groove_gas,

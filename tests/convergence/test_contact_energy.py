@@ -11,7 +11,7 @@ from sealdyn.dynamics import equations
 from sealdyn.faces import contact
 from sealdyn.faces.geometry import CONTACT_ENERGY
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
-from sealdyn.scene.contact import Contact
+from sealdyn.scene.forces import Contact
 from sealdyn.scene.rings import SecondarySeal, Stator
 from sealdyn.scene.scene import Initial, RingStart
 

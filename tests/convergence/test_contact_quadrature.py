@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from sealdyn.faces import contact, geometry
-from sealdyn.scene.contact import Contact
 from sealdyn.scene.film import Film
+from sealdyn.scene.forces import Contact
 
 R_I, R_O, C0, CONING, ROUGHNESS = 0.032, 0.040, 10e-6, 3.125e-3, 0.1e-6
 C = 3 * ROUGHNESS

@@ -13,8 +13,8 @@ from sealdyn.scenario.reader import read_scenario
 from sealdyn.simulation import selection
 from sealdyn.simulation.simulate import simulate
 from sealdyn.solvers.contract import Recorder
-from sealdyn.solvers.energy_audit import EnergyAudit
 from sealdyn.solvers.integrate import solve
+from sealdyn.solvers.run_error import EnergyAudit
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 K_S, D_S = SUPPORT.tilt()

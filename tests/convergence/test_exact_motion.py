@@ -15,7 +15,7 @@ from sealdyn.scene.film import Coefficients
 from sealdyn.scene.rings import Rotor
 from sealdyn.solvers.contract import BETWEEN, Counts, Recorder
 from sealdyn.solvers.integrate import solve
-from sealdyn.solvers.matrix_exponential import expm as exact_steps
+from sealdyn.solvers.own_methods import expm as exact_steps
 
 TURN = 2 * math.pi / SPEED
 SCENES = {

@@ -12,10 +12,10 @@ from scipy.linalg import expm
 
 from sealdyn.scene.rings import Rotor, SecondarySeal, Stator
 from sealdyn.scene.scene import Initial, RingStart
-from sealdyn.solvers.collocation import GAUSS, RADAU, collocation, rule
 from sealdyn.solvers.contract import Counts, SolverFailure
 from sealdyn.solvers.fixed_step import REFERENCE_METHODS
 from sealdyn.solvers.integrate import solve
+from sealdyn.solvers.own_methods import GAUSS, RADAU, collocation, rule
 
 FIXED = ("newmark", "midpoint", "generalised_alpha")
 

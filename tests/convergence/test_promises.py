@@ -18,13 +18,12 @@ from studies.test_rough_faces_in_studies import PUMP
 
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scenario.reader import parse_scenario, read_scenario
-from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import Shaft
 from sealdyn.scene.film import Film
-from sealdyn.scene.gas import GasReynolds
+from sealdyn.scene.fluid import GasReynolds
+from sealdyn.scene.forces import Contact
 from sealdyn.scene.rings import Rotor, Stator, Support
-from sealdyn.scene.scene import Scene
-from sealdyn.scene.variants import with_values
+from sealdyn.scene.scene import Scene, with_values
 from sealdyn.simulation.selection import choose_method
 from sealdyn.simulation.verification_run import ErrorScales
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scenes import CLEARANCE, NOTHING, SPEED, SUPPORT, film, fms, ring, run
 
-from sealdyn.scene.contact import Contact, contact_thresholds
+from sealdyn.scene.forces import Contact, contact_thresholds
 from sealdyn.scene.rings import AxialRunout, Rotor, Stator
 from sealdyn.scene.scene import Initial, RingStart
 

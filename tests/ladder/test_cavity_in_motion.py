@@ -14,7 +14,7 @@ from sealdyn.films.reynolds.mesh import ANGLE_STEP, AREA, table
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.scene.film import Film, Reynolds
 from sealdyn.solvers.contract import Counts
-from sealdyn.solvers.trbdf2 import D, W, trbdf2
+from sealdyn.solvers.own_methods import D, W, trbdf2
 
 # So far out a ring is straight; with these units p is the P of the closed form.
 FAR, VISCOUS = 1e6, 1.0 / 6.0

@@ -14,8 +14,8 @@ from sealdyn.dynamics.signals import signals
 from sealdyn.faces.geometry import DZ
 from sealdyn.films import film_named
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
-from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import Shaft
+from sealdyn.scene.forces import Contact
 from sealdyn.simulation.selection import choose_method
 from sealdyn.solvers.contract import Recorder, Status
 from sealdyn.solvers.integrate import solve

@@ -13,7 +13,7 @@ from scipy.sparse.linalg import spsolve
 from sealdyn.faces.pattern import Dimples
 from sealdyn.films._grooved.aligned import aligned_film, pattern_of
 from sealdyn.films._grooved.balance import extrapolated, steady, steady_pair
-from sealdyn.films._grooved.dimpled_mesh import dimpled_mesh
+from sealdyn.films._grooved.mesh import dimpled_mesh
 from sealdyn.scene.checks import scene_errors
 from sealdyn.scene.excitation import Shaft
 from sealdyn.scene.film import Film

@@ -14,9 +14,9 @@ from sealdyn.dynamics.model import Model
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.scenario.tables import Run
 from sealdyn.scene.checks import check_scene
+from sealdyn.scene.forces import FrictionElement, SecondarySeal, secondary_seal_errors
 from sealdyn.scene.rings import AxialRunout, Rotor, Stator, stuck_support
 from sealdyn.scene.scene import SceneError
-from sealdyn.scene.secondary_seal import FrictionElement, SecondarySeal, secondary_seal_errors
 from sealdyn.simulation.simulate import simulate
 from sealdyn.studies._runner import run_study
 

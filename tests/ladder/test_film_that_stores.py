@@ -16,8 +16,8 @@ from sealdyn.dynamics import modes, stability_thresholds
 from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.modes import Harmonic
 from sealdyn.dynamics.stability_thresholds import one_by_one
-from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import Shaft, Whirl
+from sealdyn.scene.forces import Contact
 from sealdyn.scene.rings import Stator
 from sealdyn.scene.scene import Initial, RingStart
 

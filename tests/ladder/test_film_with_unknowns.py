@@ -15,7 +15,7 @@ from sealdyn.dynamics.interface import Interface
 from sealdyn.dynamics.model import Model
 from sealdyn.faces import geometry
 from sealdyn.films.radial import film as radial
-from sealdyn.scene.contact import Contact
+from sealdyn.scene.forces import Contact
 from sealdyn.scene.rings import SecondarySeal, Stator
 from sealdyn.scene.scene import SceneError
 from sealdyn.simulation.selection import check_method, choose_method

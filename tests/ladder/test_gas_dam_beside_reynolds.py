@@ -10,7 +10,7 @@ from scipy.integrate import quad
 from sealdyn.faces import geometry
 from sealdyn.films.gas_dam import film as gas_dam
 from sealdyn.films.gas_reynolds import film as gas_reynolds
-from sealdyn.scene.gas import Gas, GasDam, density_of
+from sealdyn.scene.fluid import Gas, GasDam, density_of
 
 R_I, R_O, VISCOSITY, GAS = 0.030, 0.035, 1.85e-5, Gas(gas_constant=287.05)
 

@@ -10,7 +10,7 @@ from sealdyn.closed_form.zuk_1972 import CRUISE, MIL
 from sealdyn.films.gas_dam import film as gas_dam
 from sealdyn.scenario.reader import read_scenario, with_values
 from sealdyn.scene.film import Film
-from sealdyn.scene.gas import Gas, GasDam
+from sealdyn.scene.fluid import Gas, GasDam
 from sealdyn.studies import equilibrium
 
 WIDTH = CRUISE.outer_radius - CRUISE.inner_radius

@@ -10,7 +10,7 @@ from gas_faces import steady as of_cells
 from grooved_faces import AREA, GAS, LIQUID, R_I, R_O, ROWS, SPIRAL, TEE, film, films_of, pattern_of
 
 from sealdyn.analysis.sources.grooved_faces import many_over_narrow
-from sealdyn.closed_form.narrow_groove import GroovedFace, narrow_groove_gas, narrow_groove_liquid
+from sealdyn.closed_form.film import GroovedFace, narrow_groove_gas, narrow_groove_liquid
 from sealdyn.faces.geometry import FLOW_INNER, FORCE, TORQUE
 from sealdyn.faces.pattern import Spiral
 from sealdyn.films import film_named
@@ -20,7 +20,7 @@ from sealdyn.films._grooved.balance import Conditions, NoSteadyFilm, extrapolate
 from sealdyn.films._grooved.mesh import mesh_of
 from sealdyn.films._grooved.motion import Motion, circle_impedance
 from sealdyn.scene.film import Film, Pads
-from sealdyn.scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE, GasReynolds
+from sealdyn.scene.fluid import NORMAL_PRESSURE, NORMAL_TEMPERATURE, GasReynolds
 from sealdyn.scene.patterns import Grooves
 
 PLAIN = replace(SPIRAL, depth=0.0)

@@ -28,7 +28,7 @@ from sealdyn.films._grooved.motion import (
     unstable_roots,
 )
 from sealdyn.scene.film import Film
-from sealdyn.scene.gas import GasReynolds
+from sealdyn.scene.fluid import GasReynolds
 
 W = 1000.0
 PLAIN = replace(SPIRAL, depth=0.0)

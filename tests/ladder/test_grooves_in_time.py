@@ -50,7 +50,7 @@ from sealdyn.films._grooved.motion import (
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scene.excitation import Shaft
 from sealdyn.scene.film import Film, Reynolds
-from sealdyn.scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE, GasReynolds
+from sealdyn.scene.fluid import NORMAL_PRESSURE, NORMAL_TEMPERATURE, GasReynolds
 from sealdyn.scene.patterns import Grooves
 from sealdyn.scene.rings import Rotor, Stator, Support
 from sealdyn.scene.scene import Scene

@@ -35,14 +35,13 @@ from sealdyn.films._grooved.aligned import axial_stiffness, pattern_of
 from sealdyn.films._grooved.balance import Conditions, steady
 from sealdyn.films._grooved.mesh import mesh_of
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
-from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import Shaft
 from sealdyn.scene.film import Film
-from sealdyn.scene.gas import GasReynolds
+from sealdyn.scene.fluid import GasReynolds
+from sealdyn.scene.forces import Contact
 from sealdyn.scene.patterns import Grooves, grooves_errors
 from sealdyn.scene.rings import Rotor, Stator, Support
-from sealdyn.scene.scene import Closing, Scene, SceneError
-from sealdyn.scene.variants import frozen_at_start
+from sealdyn.scene.scene import Closing, Scene, SceneError, frozen_at_start
 from sealdyn.studies._grooved_roots import RootsOverSpeed
 
 START = f"""

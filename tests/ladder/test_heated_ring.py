@@ -8,14 +8,16 @@ from own_ring import Ring
 from scipy.linalg import eigh
 
 from sealdyn.closed_form.ring_fin import coning_per_speed_squared, ring_fin
-from sealdyn.faces.ring_coning import (
+from sealdyn.faces.ring_heat import (
+    RADIAL,
     RingBody,
+    conduction,
     coning_by_bow,
     coning_by_temperature,
-    pressure_coning,
+    ring_heat,
+    ring_states,
     section_weights,
 )
-from sealdyn.faces.ring_heat import RADIAL, conduction, ring_heat, ring_states
 from sealdyn.scene.rings import MATERIALS
 
 CARBON = dict(
@@ -72,18 +74,6 @@ def test_rows_of_an_independent_program(name):
     assert found.time_constant == pytest.approx(volumes[2], rel=0.02)
 
 
-@pytest.mark.parametrize(
-    "o_ring, elements, shell", [(12, -4.598e-5, -4.734e-5), (16, -2.407e-5, -2.598e-5), (20, 9.37e-6, 9.33e-6)]
-)
-def test_pressure_and_where_the_o_ring_sits(o_ring, elements, shell):
-    """One bar turns the ring of carbon by +9 to -46 urad, by the place of its O-ring (independent program)."""
-    ring = replace(ROWS["carbon, O-ring"][0], wetted_length=1e-3 * o_ring)
-    balance = np.sqrt(0.034**2 - 0.8 * (0.034**2 - 0.0305**2))
-    found = pressure_coning(ring, 1e5, balance)
-    assert found == pytest.approx(elements, rel=0.1)
-    assert found == pytest.approx(shell, rel=0.02)
-
-
 # --- against finite elements -----------------------------------------------------------------------------
 
 
@@ -115,31 +105,6 @@ def test_other_rings_against_finite_elements(name):
     assert found.hottest * found.resistance == pytest.approx(expected.hottest, rel=0.02)
     assert found.crown_per_watt == pytest.approx(expected.crown, rel=0.15)
     assert found.at_o_ring * found.resistance == pytest.approx(expected.at_o_ring, rel=0.05)
-
-
-@pytest.mark.parametrize("wet", ["outer", "bore"])
-def test_pressure_against_finite_elements(wet):
-    """All that presses on a ring that is half as long again as it is wide, its O-ring at two thirds."""
-    ring = body(29, 36, 11, SILICON_CARBIDE, 5000.0, (30.5, 34), 7, wet)
-    inner, outer, inside = ring.face_inner_radius, ring.face_outer_radius, wet == "bore"
-    share = 0.8 * (outer**2 - inner**2)
-    balance = np.sqrt(inner**2 + share) if inside else np.sqrt(outer**2 - share)
-    edge = ring.inner_radius if inside else ring.outer_radius
-    ends = sorted((inner if inside else outer, edge)), (inner, outer), sorted((balance, edge))
-    beside, band, back = (("face", *ends[0]), ("face", *ends[1]), ("back", *ends[2]))
-
-    def even(r):
-        return 1.0 + 0 * r
-
-    def film(r):
-        return (outer - r if inside else r - inner) / (outer - inner)
-
-    loads = [(wet, 0.0, ring.wetted_length, even), (*beside, even), (*band, film), (*back, even)]
-    drawn = Ring(ring, balance=balance)
-    force = {"face": 1, "back": -1}
-    left = -sum(force.get(load[0], 0) * drawn.push(*load).sum() for load in loads) / drawn.push(*band, even).sum()
-    expected = drawn.pressed([*loads, (*band, lambda r: left + 0 * r)])
-    assert pressure_coning(ring, 1.0, balance) == pytest.approx(expected, rel=0.1)
 
 
 @pytest.mark.parametrize("material, length", [(CARBON, 7), (SILICON_CARBIDE, 14), (STEEL, 10)])

@@ -19,9 +19,9 @@ from sealdyn.films.reynolds.film import FILM as REYNOLDS_FILM
 from sealdyn.films.reynolds.mesh import ANGLE_STEP, AREA, SECTORS, table
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import Scenario, read_scenario
-from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import Shaft
 from sealdyn.scene.film import Film, Reynolds
+from sealdyn.scene.forces import Contact
 from sealdyn.scene.patterns import Waviness
 from sealdyn.scene.rings import Stator, Support
 from sealdyn.scene.scene import Scene, SceneError

@@ -12,10 +12,9 @@ from test_ludwig_released import integrals, ready_scene
 from sealdyn.analysis import quasi_static
 from sealdyn.closed_form import ludwig_allen as la
 from sealdyn.scenario.reader import parse_scenario
+from sealdyn.scene.forces import SecondarySeal
 from sealdyn.scene.rings import AxialRunout
-from sealdyn.scene.scene import SceneError
-from sealdyn.scene.secondary_seal import SecondarySeal
-from sealdyn.scene.variants import counterpart
+from sealdyn.scene.scene import SceneError, counterpart
 from sealdyn.studies._runner import run_study
 from sealdyn.studies.sealing_number import released as free
 

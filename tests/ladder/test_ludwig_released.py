@@ -12,8 +12,8 @@ from sealdyn.analysis import quasi_static
 from sealdyn.closed_form import ludwig_allen as la
 from sealdyn.closed_form import ludwig_allen as rr
 from sealdyn.dynamics.model import Model
-from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import Shaft
+from sealdyn.scene.forces import Contact
 from sealdyn.scene.rings import Rotor, SecondarySeal, Stator, Support
 from sealdyn.scene.scene import Closing, Scene, SceneError
 from sealdyn.studies.sealing_number import released as free

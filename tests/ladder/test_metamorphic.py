@@ -21,10 +21,10 @@ from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scenario.reader import Scenario, parse_scenario
 from sealdyn.scenario.tables import Run
 from sealdyn.scenario.templates import shipped_paths
-from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import Shaft
 from sealdyn.scene.film import Pads, Reynolds
-from sealdyn.scene.gas import gas_of
+from sealdyn.scene.fluid import gas_of
+from sealdyn.scene.forces import Contact
 from sealdyn.scene.patterns import Waviness
 from sealdyn.scene.rings import Rotor
 from sealdyn.scene.scene import Initial, RingStart, Scene

@@ -9,8 +9,8 @@ from scenes import CLEARANCE, R_I, R_O, SPEED, film, fmr, fms, run
 from sealdyn import open_archive, read_scenario, simulate
 from sealdyn.faces import contact, geometry
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
-from sealdyn.scene.contact import Contact
 from sealdyn.scene.film import Profile
+from sealdyn.scene.forces import Contact
 
 SCENARIO = """
 [shaft]

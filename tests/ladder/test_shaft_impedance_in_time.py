@@ -8,8 +8,8 @@ from command import SCENARIOS
 
 from sealdyn import Simulation, read_scenario
 from sealdyn.dynamics.model import Model
-from sealdyn.dynamics.shaft_impedance import at_shaft
-from sealdyn.scene.variants import frozen_at_start
+from sealdyn.dynamics.modes import at_shaft
+from sealdyn.scene.scene import frozen_at_start
 
 # Of the shaft's motion: frequency over speed, and amplitude in clearances.
 RATIO, SHARE = 0.7, 1e-3

@@ -14,10 +14,10 @@ from random_seals import drawn_seal, plain, rough_seal
 from scenes import NOTHING, SUPPORT, film, fmr, fms, fmsr, ring
 
 from sealdyn.dynamics import modes
-from sealdyn.dynamics.characteristic import roots
+from sealdyn.dynamics.exponents import roots
 from sealdyn.dynamics.model import Model
-from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import Shaft
+from sealdyn.scene.forces import Contact
 from sealdyn.scene.rings import Rotor, Stator
 from sealdyn.simulation.stability import stability
 

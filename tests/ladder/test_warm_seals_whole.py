@@ -12,8 +12,7 @@ from warm_seals import OIL, ROUGH, warm_seal
 import sealdyn
 from sealdyn.dynamics.warm_course import course
 from sealdyn.dynamics.warm_state import Warming, warming
-from sealdyn.faces.ring_coning import RingBody
-from sealdyn.faces.ring_heat import conduction, ring_heat, ring_states
+from sealdyn.faces.ring_heat import RingBody, conduction, ring_heat, ring_states
 from sealdyn.simulation.heat import limits_of
 
 CARBON = dict(density=1800.0, modulus=20e9, poisson=0.2, expansion=4.5e-6, conductivity=10.0, specific_heat=750.0)

@@ -16,7 +16,7 @@ from sealdyn.closed_form import radial_film_coefficients
 from sealdyn.dynamics.model import Model
 from sealdyn.report.panels import draw
 from sealdyn.scenario.reader import with_values
-from sealdyn.scene.variants import frozen_at_start
+from sealdyn.scene.scene import frozen_at_start
 from sealdyn.studies import coefficients
 from sealdyn.studies.coefficients import Settings
 

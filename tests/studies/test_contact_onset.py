@@ -16,7 +16,7 @@ from sealdyn.dynamics.model import Model
 from sealdyn.report.panels import sheet_of
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import parse_scenario, with_values
-from sealdyn.scene import variants
+from sealdyn.scene import scene as scenes
 from sealdyn.simulation.margin import aligned_flow, limit_of_forcing, linear_films, linear_onset
 from sealdyn.simulation.plausibility import FAST, leakage_numbers
 from sealdyn.solvers.contract import Recorder
@@ -166,7 +166,7 @@ def test_a_gas_is_slow_no_more_before_its_faces_touch():
     read = sealdyn.read_scenario(SCENARIOS / "gas_reynolds_reference.toml", ["stator.misalignment=0"])
 
     def scene(value):
-        return variants.with_values(read.scene, {"rotor.runout": value})
+        return scenes.with_values(read.scene, {"rotor.runout": value})
 
     formula, touching = linear_onset(scene, "rotor.runout")
     model = Model(scene(0.0), 1e-6)

@@ -188,7 +188,7 @@ def test_items_that_do_not_exist_are_refused(tmp_path):
 
 def edge_share(order, per_turn, turns=40):
     """Share at the edge of the band of a unit circle with a hundredth of a response at one order."""
-    from sealdyn.numerics.order_spectrum import at_the_edge, order_spectrum
+    from sealdyn.numerics.time_series import at_the_edge, order_spectrum
 
     at = np.arange(turns * per_turn) / per_turn
     orders, amplitude, resolution, _ = order_spectrum(at, np.cos(2 * np.pi * at) + 0.1 * np.cos(2 * np.pi * order * at))

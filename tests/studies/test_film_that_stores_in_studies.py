@@ -13,7 +13,7 @@ from sealdyn.dynamics import interface, modes, stability_thresholds
 from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.stability_thresholds import one_by_one
 from sealdyn.scenario.reader import with_values
-from sealdyn.scene.variants import frozen_at_start
+from sealdyn.scene.scene import frozen_at_start
 from sealdyn.simulation.simulate import simulate_in_memory
 from sealdyn.studies import campbell, contact_onset, critical_speed, stability, steady_state, transmissibility
 from sealdyn.studies.runup import Settings as RunupSettings

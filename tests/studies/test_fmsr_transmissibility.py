@@ -9,7 +9,7 @@ from oracles import tilt_roots, tilts_in_turning_axes
 
 from sealdyn import read_scenario
 from sealdyn.closed_form import GREEN_1989_ROUNDED
-from sealdyn.scene.variants import arrangement, counterpart, with_both_flexible_rings
+from sealdyn.scene.scene import arrangement, counterpart, with_both_flexible_rings
 from sealdyn.studies import transmissibility
 from sealdyn.studies.transmissibility import Settings
 

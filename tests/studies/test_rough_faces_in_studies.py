@@ -14,7 +14,7 @@ from scipy.optimize import brentq
 from sealdyn.analysis.whirl_in_time import growth_rate
 from sealdyn.dynamics.model import Model
 from sealdyn.scenario.reader import parse_scenario, with_values
-from sealdyn.scene.variants import frozen_at_start, unforced, without
+from sealdyn.scene.scene import frozen_at_start, unforced, without
 from sealdyn.solvers.contract import Recorder
 from sealdyn.solvers.integrate import solve
 from sealdyn.studies import coefficients, critical_speed, equilibrium

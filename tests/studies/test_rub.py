@@ -17,7 +17,7 @@ from sealdyn.analysis.whirl_in_time import whirl_fate
 from sealdyn.numerics import time_series
 from sealdyn.report import panels
 from sealdyn.scenario.errors import ScenarioError
-from sealdyn.scene.variants import with_values
+from sealdyn.scene.scene import with_values
 from sealdyn.studies._runner import run_study
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"

@@ -6,8 +6,8 @@ from command import SCENARIOS
 
 from sealdyn import read_scenario, run, run_study
 from sealdyn.dynamics.model import Model
-from sealdyn.dynamics.shaft_impedance import at_shaft
-from sealdyn.scene.variants import frozen_at_start, with_both_flexible_rings, with_single_flexible_ring
+from sealdyn.dynamics.modes import at_shaft
+from sealdyn.scene.scene import frozen_at_start, with_both_flexible_rings, with_single_flexible_ring
 
 W = 700.0
 

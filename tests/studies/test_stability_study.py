@@ -10,7 +10,7 @@ from sealdyn import read_scenario
 from sealdyn.dynamics.model import Model
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import parse_scenario, with_values
-from sealdyn.scene.variants import frozen_at_start
+from sealdyn.scene.scene import frozen_at_start
 from sealdyn.studies import stability
 from sealdyn.studies.stability import Settings
 from sealdyn.studies.stability.grid import Grid, growth_rates

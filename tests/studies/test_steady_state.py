@@ -9,7 +9,7 @@ from oracles import tilt_roots
 from scenes import started
 
 import sealdyn
-from sealdyn.analysis.film_balance import FilmBalance
+from sealdyn.analysis.harmonic_balance import FilmBalance
 from sealdyn.analysis.shooting import Shooter
 from sealdyn.archive import read_study
 from sealdyn.dynamics.model import Model

@@ -13,7 +13,7 @@ from sealdyn import read_scenario
 from sealdyn.closed_form import GREEN_1989
 from sealdyn.dynamics.model import Model
 from sealdyn.scenario.reader import parse_scenario
-from sealdyn.scene.variants import counterpart, frozen_at_start, with_single_flexible_ring
+from sealdyn.scene.scene import counterpart, frozen_at_start, with_single_flexible_ring
 from sealdyn.studies import transmissibility
 from sealdyn.studies.transmissibility import Settings
 

@@ -10,7 +10,7 @@ import sealdyn
 from sealdyn import Scenario
 from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.warm_state import at_work, warming
-from sealdyn.scene.liquid import in_numbers
+from sealdyn.scene.fluid import in_numbers
 from sealdyn.studies.contact_onset import SETTLED
 
 SPEED = 308.923278

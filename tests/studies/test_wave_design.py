@@ -9,8 +9,7 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from sealdyn import read_scenario, run_study
-from sealdyn.analysis.wave_design import design, joined, stiffest
-from sealdyn.dynamics.elastic_ring import at_rest, operating_point, with_cells_of
+from sealdyn.dynamics.elastic_ring import at_rest, design, joined, operating_point, stiffest, with_cells_of
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scene.rings import ElasticRing
 from sealdyn.scene.scene import SceneError

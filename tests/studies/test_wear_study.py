@@ -17,8 +17,8 @@ from sealdyn.faces import contact
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.report.panels import draw
 from sealdyn.scenario.errors import ScenarioError
-from sealdyn.scene.contact import Contact
 from sealdyn.scene.film import Film
+from sealdyn.scene.forces import Contact
 from sealdyn.scene.rings import Rotor, Stator, Support
 from sealdyn.scene.scene import Closing
 from sealdyn.studies._runner import run_study

@@ -16,12 +16,10 @@ from sealdyn.scene.excitation import Shaft
 from sealdyn.scene.film import Film
 from sealdyn.scene.patterns import Grooves
 from sealdyn.scene.rings import Rotor, Stator, Support
-from sealdyn.scene.scene import Scene
-from sealdyn.scene.variants import frozen_at_start
+from sealdyn.scene.scene import Scene, frozen_at_start
 from sealdyn.studies import _grooved_roots
 from sealdyn.studies._grooved_roots import RootsOverSpeed, modes
-from sealdyn.studies.transmissibility.arrangements import SEALS, Arrangement
-from sealdyn.studies.transmissibility.over_grooves import seals_over_grooves
+from sealdyn.studies.transmissibility.arrangements import SEALS, Arrangement, seals_over_grooves
 
 SUPPORT = Support(axial_stiffness=1.64e4, axial_damping=1e3, tilt_stiffness=31.0, tilt_damping=1.4)
 RING = dict(mass=0.2, transverse_inertia=2e-3, polar_inertia=5e-4, support=SUPPORT)

@@ -9,7 +9,7 @@ PACKAGE = Path(__file__).parents[2] / "sealdyn"
 
 # Rooms, lowest first: a room may import only rooms of the lines above its own.
 ORDER = (
-    ("extensions", "status", "quantities", "first_moments"),
+    ("extensions", "status", "quantities"),
     ("kernel_cache",),
     ("answers",),
     ("numerics", "closed_form", "archive", "unit_names"),

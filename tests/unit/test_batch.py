@@ -8,7 +8,7 @@ from scenes import fmr, fms, fmsr, housing_vibration, prepared, runup
 
 from sealdyn.dynamics.signals import TALLIED, signals
 from sealdyn.faces.film_thickness import h_min
-from sealdyn.scene.contact import Contact
+from sealdyn.scene.forces import Contact
 from sealdyn.scene.rings import SecondarySeal
 
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from sealdyn.scenario.reader import ScenarioError, parse_scenario, with_values
 from sealdyn.scenario.templates import template
-from sealdyn.scene import variants
+from sealdyn.scene import scene as scenes
 from sealdyn.scene.rings import INERTIAL, MATERIALS, Body, Material
 from sealdyn.studies.stability import si_axis
 
@@ -76,16 +76,16 @@ def test_the_mass_follows_the_body():
     longer = parse("rotor.body.length=70 mm").scene.rotor
     assert longer.mass == pytest.approx(2 * parse().scene.rotor.mass, rel=1e-14)
     assert with_values(parse(), {"rotor.body.length": "70 mm"}).scene.rotor == longer
-    assert variants.with_values(parse().scene, {"rotor.body.length": 0.07}).rotor == longer
+    assert scenes.with_values(parse().scene, {"rotor.body.length": 0.07}).rotor == longer
     assert with_values(parse(), {"film.clearance": "11 um"}).scene.rotor == parse().scene.rotor
-    stator = variants.counterpart(parse().scene).stator
+    stator = scenes.counterpart(parse().scene).stator
     assert stator.body == parse().scene.rotor.body and inertias(stator) == inertias(parse().scene.rotor)
 
 
 def test_a_mass_set_by_a_study_does_without_the_body():
     for rotor in (
         with_values(parse(), {"rotor.mass": 1.0}).scene.rotor,
-        variants.with_values(parse().scene, {"rotor.mass": 1.0}).rotor,
+        scenes.with_values(parse().scene, {"rotor.mass": 1.0}).rotor,
     ):
         assert rotor.body is None and inertias(rotor) == [1.0, *inertias(parse().scene.rotor)[1:]]
 

@@ -28,8 +28,8 @@ from scenes import (
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scenario.reader import read_scenario
 from sealdyn.scenario.tables import Run
-from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import AngularVibration, Housing
+from sealdyn.scene.forces import Contact
 from sealdyn.scene.rings import Stator
 from sealdyn.simulation import certificate, verification_run
 from sealdyn.simulation import film_error as film_comparison
@@ -39,8 +39,8 @@ from sealdyn.simulation.selection import Plan, Start, select_film
 from sealdyn.simulation.simulate import simulate, simulate_in_memory
 from sealdyn.simulation.verification_run import Comparison, ProgressSink, sharper
 from sealdyn.solvers.contract import TIGHTEST, Counts, Recorder, tolerance_for
-from sealdyn.solvers.global_error import GlobalErrorEstimate
 from sealdyn.solvers.integrate import solve
+from sealdyn.solvers.run_error import GlobalErrorEstimate
 
 TURN = 2 * math.pi / SPEED
 

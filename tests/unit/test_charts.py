@@ -11,7 +11,7 @@ from drawn import drawn, panel, text_trouble
 from made_up_run import FILM, SCENARIO, SUMMARY, drop, first, pressures, whirling, write
 
 from sealdyn.archive import ArchiveWriter, Series
-from sealdyn.numerics.order_spectrum import order_spectrum
+from sealdyn.numerics.time_series import order_spectrum
 from sealdyn.report.charts import (
     film,
     orbit,

@@ -8,7 +8,7 @@ from drawn import drawn, panel, text_trouble
 from made_up_run import FILM, SUMMARY, drop, first, whirling, write
 from matplotlib.figure import Figure
 
-from sealdyn.numerics.order_spectrum import located, order_spectrum, peaks
+from sealdyn.numerics.time_series import located, order_spectrum, peaks
 from sealdyn.report.charts import film, orbit, overview, poincare, sketch, spectrum
 from sealdyn.report.charts.overview import sweep_lines
 from sealdyn.report.charts.page import written

@@ -10,8 +10,8 @@ from scipy.integrate import quad
 from scipy.special import pbdv
 
 from sealdyn.faces import contact, geometry, roughness
-from sealdyn.scene.contact import Contact, contact_errors, contact_thresholds, finish
 from sealdyn.scene.film import Film
+from sealdyn.scene.forces import Contact, contact_errors, contact_thresholds, finish
 
 R_I, R_O, C0, CONING, ROUGHNESS, STRENGTH, SPEED = 0.032, 0.040, 10e-6, 3.125e-3, 0.1e-6, 300e6, 1000.0
 C = 3 * ROUGHNESS

@@ -9,9 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import sealdyn
-from sealdyn.analysis import radial_rules
-from sealdyn.analysis.design_rules import OF_OIL, RULES, findings
-from sealdyn.analysis.gas_rules import OF_GAS
+from sealdyn.analysis import other_rules
+from sealdyn.analysis.design_rules import OF_GAS, OF_OIL, RULES, findings
 from sealdyn.analysis.seal_figures import Verdict
 from sealdyn.dynamics.imposed_motion import rest_state
 from sealdyn.dynamics.interface import flow_at_rest
@@ -97,8 +96,8 @@ TOLD = {"heat", "pressure_velocity"}
 
 def test_every_rule_may_be_acknowledged():
     assert [*errors.FACE_RULES] == sorted(RULES | OF_GAS)
-    assert {*errors.LIP_RULES} == {*radial_rules.LIP} == {*radial_rules.RIBBED_LIP}
-    assert {*errors.CIRCUMFERENTIAL_RULES} == {*radial_rules.CIRCUMFERENTIAL}
+    assert {*errors.LIP_RULES} == {*other_rules.LIP} == {*other_rules.RIBBED_LIP}
+    assert {*errors.CIRCUMFERENTIAL_RULES} == {*other_rules.CIRCUMFERENTIAL}
 
 
 def test_every_rule_is_kept_here_and_broken_there():

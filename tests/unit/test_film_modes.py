@@ -11,7 +11,7 @@ from scipy.sparse import csc_array
 from sealdyn.dynamics.condensation import FilmDerivatives, LinearFilm
 from sealdyn.dynamics.film_modes import ReducedFilm
 from sealdyn.dynamics.modes import LinearScene, RingNumbers
-from sealdyn.faces.waviness import lay_waves
+from sealdyn.faces.film_thickness import lay_waves
 from sealdyn.films.gas_reynolds import film as gas
 from sealdyn.scene.patterns import Waviness
 

@@ -8,8 +8,7 @@ import pytest
 
 import sealdyn
 from sealdyn import studies
-from sealdyn.analysis.design_rules import RULES
-from sealdyn.analysis.gas_rules import OF_GAS
+from sealdyn.analysis.design_rules import OF_GAS, RULES
 from sealdyn.quantities import reading_in
 from sealdyn.report.summary import run_answer
 from sealdyn.report.text import lines, written_units

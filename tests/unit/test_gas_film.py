@@ -19,7 +19,7 @@ from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.scene.excitation import Shaft
 from sealdyn.scene.film import Coefficients, Film
-from sealdyn.scene.gas import GASES, GasDam, density_of, viscosity_of
+from sealdyn.scene.fluid import GASES, GasDam, density_of, viscosity_of
 from sealdyn.scene.rings import Rotor, Stator, Support
 from sealdyn.scene.scene import Scene, SceneError
 from sealdyn.solvers.contract import Status

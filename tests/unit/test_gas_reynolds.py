@@ -10,7 +10,7 @@ from scipy.integrate import quad
 from scipy.special import iv, kv
 
 from sealdyn.dynamics.condensation import FilmDerivatives
-from sealdyn.faces import geometry, waviness
+from sealdyn.faces import film_thickness, geometry
 from sealdyn.films import film_of
 from sealdyn.films.gas_reynolds import film as gas
 from sealdyn.scene.excitation import Shaft
@@ -111,7 +111,7 @@ def test_tilted_faces_tend_to_collocation_at_second_order(slip, waves, spin, pre
     errors = []
     for cells in ((6, 24), (12, 48), (24, 96)):
         f = gas.parameters(gas_film(cells, slip, **changes), CLEARANCE)
-        waviness.lay_waves(f, waves, [])
+        film_thickness.lay_waves(f, waves, [])
         s = gap_state(film, spin, **TILTED, **MOVING)
         steady(f, s)
         apart = s[PARTS] - exact
@@ -197,7 +197,7 @@ def cases():
     for slip, spin in ((False, 1000.0), (True, -3e4), (True, 0.0)):
         film = gas_film((7, 12), slip, coning=3e-4, outer_pressure=3e5)
         f, s = gas.parameters(film, CLEARANCE), gap_state(film, spin, **TILTED, **MOVING)
-        waviness.lay_waves(f, WAVES, [Waviness(order=3, amplitude=0.3e-6)])
+        film_thickness.lay_waves(f, WAVES, [Waviness(order=3, amplitude=0.3e-6)])
         yield f, s, steady(f, s) * draw.uniform(0.5, 1.5, 84)
 
 
@@ -280,7 +280,7 @@ def test_smooth_steps_around_the_circle_lift_at_second_order():
     for angles in (96, 192, 384, 768):
         film = gas_film((8, angles), inner_pressure=1e5, clearance=3e-6)
         f, s = gas.parameters(film, 3e-6), gap_state(film, 1000.0, dz=parts[0].real)
-        waviness.lay_waves(f, waves, [])
+        film_thickness.lay_waves(f, waves, [])
         steady(f, s)
         lifts.append(s[geometry.FORCE] - 1e5 * np.pi * (R_O**2 - R_I**2))
     # Measured 29.0, 29.3, 29.4, 29.4 N with 12 cells: orders of 2.0 and 2.0.

@@ -10,7 +10,7 @@ from command import SCENARIOS
 from grooved_faces import AREA, R_I, R_O, ROWS, SEAL_TOML
 
 from sealdyn import read_scenario, run_study
-from sealdyn.analysis.check import checked
+from sealdyn.analysis.desk import checked
 from sealdyn.dynamics.equilibrium import settle
 from sealdyn.dynamics.interface import Interface, opening_law
 from sealdyn.films import film_of
@@ -18,14 +18,13 @@ from sealdyn.films._grooved.aligned import aligned_film, extrapolated_force
 from sealdyn.films._grooved.motion import tilt_law, unstable_roots
 from sealdyn.report.text import resolved_lines
 from sealdyn.scene.checks import scene_errors, unused
-from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import Shaft
 from sealdyn.scene.film import Film
-from sealdyn.scene.gas import GasReynolds
+from sealdyn.scene.fluid import GasReynolds
+from sealdyn.scene.forces import Contact
 from sealdyn.scene.patterns import Grooves
 from sealdyn.scene.rings import Rotor, Stator, Support
-from sealdyn.scene.scene import Closing, Scene, SceneError
-from sealdyn.scene.variants import counterpart, frozen_at_start
+from sealdyn.scene.scene import Closing, Scene, SceneError, counterpart, frozen_at_start
 from sealdyn.studies import stribeck
 from sealdyn.studies._grooved import flows_over_grooves, tracking
 from sealdyn.studies._grooved_roots import RootsOverSpeed, modes, rings_of

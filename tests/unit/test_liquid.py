@@ -12,7 +12,7 @@ from sealdyn import Scenario, ScenarioError
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.scene.film import Film
-from sealdyn.scene.liquid import Liquid, Water, in_numbers, liquid_of
+from sealdyn.scene.fluid import Liquid, Water, in_numbers, liquid_of
 
 ZERO = 273.15
 # Saturated (below 100 degC at 1 bar all but the same) water: degC, viscosity (uPa s), density (kg/m^3), specific heat
@@ -129,9 +129,9 @@ def test_a_warm_scenario_comes_back_as_it_went(liquid):
 
 
 def _names():
-    from sealdyn.scene import excitation, film, liquid, rings, scene
+    from sealdyn.scene import excitation, film, fluid, rings, scene
 
-    return {k: v for m in (excitation, film, liquid, rings, scene) for k, v in vars(m).items()}
+    return {k: v for m in (excitation, film, fluid, rings, scene) for k, v in vars(m).items()}
 
 
 def test_an_archive_keeps_its_liquid_and_heat(tmp_path):

@@ -17,10 +17,8 @@ from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scenario.reader import ScenarioError, parse_scenario, read_scenario
 from sealdyn.scene.excitation import Shaft
 from sealdyn.scene.film import Coefficients
-from sealdyn.scene.loads import Load, LoadSamples, LoadTone
-from sealdyn.scene.scene import SceneError
-from sealdyn.scene.secondary_seal import SecondarySeal
-from sealdyn.scene.variants import frozen_at, unforced
+from sealdyn.scene.forces import Load, LoadSamples, LoadTone, SecondarySeal
+from sealdyn.scene.scene import SceneError, frozen_at, unforced
 
 FMS = (Path(__file__).parents[2] / "scenarios" / "fms_reference.toml").read_text()
 FILM = Coefficients(tilt_stiffness=5000.0, tilt_damping=3.6, axial_stiffness=2e7, axial_damping=9e3)

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 from scenes import fms, started
 
-from sealdyn.numerics.order_spectrum import FOLDED, at_the_edge
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
-from sealdyn.numerics.time_series import centres, peak, resolution, tracked, waterfall
+from sealdyn.numerics.time_series import FOLDED, at_the_edge, centres, peak, resolution, tracked, waterfall
 from sealdyn.studies.runup.ramp_run import EvenAngleSink, RampCycle
 
 PER_TURN = 32

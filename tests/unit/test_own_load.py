@@ -13,7 +13,7 @@ import sealdyn
 from sealdyn import ScenarioError, read_scenario
 from sealdyn.extensions import VARIABLE
 from sealdyn.numerics.parallel import content_keys
-from sealdyn.scene.variants import unforced
+from sealdyn.scene.scene import unforced
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 OWN, REFERENCE = SCENARIOS / "own", SCENARIOS / "fms_reference.toml"

@@ -11,8 +11,8 @@ from scipy.optimize import brentq
 
 from sealdyn.faces import contact, geometry
 from sealdyn.faces.film_thickness import h_min
-from sealdyn.scene.contact import Contact
 from sealdyn.scene.film import Film, Profile
+from sealdyn.scene.forces import Contact
 
 R_I, R_O, C0, ROUGHNESS, STRENGTH, SPEED = 0.032, 0.040, 10e-6, 0.1e-6, 300e6, 1000.0
 C = 3 * ROUGHNESS

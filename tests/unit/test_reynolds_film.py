@@ -9,6 +9,7 @@ import pytest
 from scipy.integrate import dblquad, quad
 
 from sealdyn.faces import contact, geometry, roughness
+from sealdyn.faces.film_thickness import lay_waves
 from sealdyn.faces.geometry import (
     CAVITATED,
     CONTACT_AREA,
@@ -31,12 +32,11 @@ from sealdyn.faces.geometry import (
     VISCOSITY,
     face_parameters,
 )
-from sealdyn.faces.waviness import lay_waves
 from sealdyn.films import film_named
 from sealdyn.films.reynolds import film as reynolds
 from sealdyn.films.reynolds import mesh as means
-from sealdyn.scene.contact import Contact
 from sealdyn.scene.film import Film, Reynolds
+from sealdyn.scene.forces import Contact
 from sealdyn.scene.patterns import Waviness
 
 SPIN, VISCOUS = 300.0, 1e-3

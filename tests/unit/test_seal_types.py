@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sealdyn.analysis.design_rules import findings
-from sealdyn.analysis.radial_rules import findings as radial_findings
-from sealdyn.analysis.seal_types import Duty, limits, suited
+from sealdyn.analysis.other_rules import Duty, limits, suited
+from sealdyn.analysis.other_rules import findings as radial_findings
 from sealdyn.scenario.reader import read_scenario
 from sealdyn.simulation.simulate import prepare_run
 

@@ -12,9 +12,9 @@ from scenes import fms, ring
 
 from sealdyn.analysis.poincare_map import PeriodMap
 from sealdyn.dynamics.secondary_seal import excess, sliding
+from sealdyn.scene.forces import SecondarySeal, secondary_seal_errors
 from sealdyn.scene.rings import Stator
 from sealdyn.scene.scene import SceneError
-from sealdyn.scene.secondary_seal import SecondarySeal, secondary_seal_errors
 
 LINE, RADIUS = 37.0, 0.045
 speeds = st.floats(-1.0, 1.0).filter(lambda x: abs(x) > 1e-6)

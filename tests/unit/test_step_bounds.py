@@ -25,9 +25,9 @@ from sealdyn.dynamics.step_bounds import (
 from sealdyn.faces.film_thickness import h_min
 from sealdyn.faces.geometry import GX, GY
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
-from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import AngularVibration, AxialVibration, Housing, Shaft, Whirl
 from sealdyn.scene.film import Profile
+from sealdyn.scene.forces import Contact
 from sealdyn.scene.patterns import Waviness
 from sealdyn.scene.rings import AxialRunout, Rotor, Stator
 from sealdyn.solvers.contract import Counts

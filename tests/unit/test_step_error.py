@@ -10,8 +10,8 @@ from scenes import SPEED, TILT_SCALE, apart, fmr, fms, fmsr, free_ring, prepared
 from sealdyn.numerics.hermite import integrals
 from sealdyn.solvers import sundials_direct
 from sealdyn.solvers.contract import Recorder, tolerance_for
-from sealdyn.solvers.global_error import GlobalErrorEstimate
 from sealdyn.solvers.integrate import solve
+from sealdyn.solvers.run_error import GlobalErrorEstimate
 
 TURN = 2 * math.pi / SPEED
 

@@ -16,7 +16,7 @@ from sealdyn.report.charts import overview
 from sealdyn.report.summary import run_answer
 from sealdyn.report.text import line_words, lines
 from sealdyn.scenario.reader import parse_scenario, read_scenario
-from sealdyn.scene.gas import density_of, gas_of
+from sealdyn.scene.fluid import density_of, gas_of
 from sealdyn.scene.rings import SMALL_TILT
 from sealdyn.simulation.simulate import prepare_run, simulate_in_memory
 

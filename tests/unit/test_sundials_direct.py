@@ -12,7 +12,7 @@ from scenes import SPEED, fmr, fms, fmsr, prepared, runup
 
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scenario.reader import Scenario, read_scenario
-from sealdyn.scene.contact import Contact
+from sealdyn.scene.forces import Contact
 from sealdyn.scene.rings import Stator
 from sealdyn.simulation.simulate import simulate_in_memory
 from sealdyn.solvers import methods, sundials_libraries, sundials_python

@@ -15,7 +15,7 @@ from scenes import CLEARANCE, MISALIGNMENT, R_I, SPEED, Sink, fmr, fms, fmsr, pr
 from sealdyn.dynamics import coupled_native
 from sealdyn.dynamics.model import Model
 from sealdyn.faces.geometry import ROTOR_ANGLE
-from sealdyn.scene.contact import Contact
+from sealdyn.scene.forces import Contact
 from sealdyn.scene.rings import Stator
 from sealdyn.solvers import methods, sundials_direct, sundials_libraries, sundials_python
 from sealdyn.solvers.contract import Cause, Counts, SolverFailure

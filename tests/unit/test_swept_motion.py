@@ -71,7 +71,7 @@ def exact_motion(sweep):
     def step(x):
         """Integral of (x (1 - x))^4 from 0, over its whole."""
         x = min(max(x, mpmath.mpf(0)), mpmath.mpf(1))
-        return 630 * sum(mpmath.binomial(4, k) * (-1) ** k * x ** (5 + k) / (5 + k) for k in range(5))
+        return 630 * sum(math.comb(4, k) * (-1) ** k * x ** (5 + k) / (5 + k) for k in range(5))
 
     def at(t):
         s = t - mpmath.mpf(sweep.start)

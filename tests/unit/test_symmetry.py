@@ -11,12 +11,11 @@ from sealdyn.dynamics.interface import Interface
 from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.run_state import Concern
 from sealdyn.faces.geometry import GAP_STATE_SIZE, GX, GX_RATE, INNER_PRESSURE, OUTER_PRESSURE, VISCOSITY
-from sealdyn.films.reynolds.cavitation import ALIKE, STATUS
+from sealdyn.films.reynolds.pressure import ALIKE, STATUS
 from sealdyn.scene.film import Coefficients, Reynolds
 from sealdyn.scene.patterns import Waviness, alike_sectors
 from sealdyn.scene.rings import Rotor
-from sealdyn.scene.scene import Initial, RingStart, SceneError
-from sealdyn.scene.variants import tilting
+from sealdyn.scene.scene import Initial, RingStart, SceneError, tilting
 from sealdyn.simulation.selection import prepare_run
 from sealdyn.simulation.simulate import simulate_in_memory
 from sealdyn.studies._runner import _moment, _refuse, study_info

@@ -16,8 +16,7 @@ from sealdyn.scene.excitation import Housing, Shaft
 from sealdyn.scene.film import Coefficients
 from sealdyn.scene.patterns import tilt_is_imposed
 from sealdyn.scene.rings import MassCentre, Rotor, Stator, Support
-from sealdyn.scene.scene import Scene, SceneError
-from sealdyn.scene.variants import uneven_supports
+from sealdyn.scene.scene import Scene, SceneError, uneven_supports
 from sealdyn.solvers.contract import Recorder
 from sealdyn.solvers.integrate import solve
 from sealdyn.studies.transmissibility.arrangements import seals_of

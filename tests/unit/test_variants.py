@@ -12,12 +12,11 @@ from sealdyn.scenario import reader
 from sealdyn.scenario.overrides import override_of
 from sealdyn.scenario.reader import ScenarioError, parse_scenario
 from sealdyn.scene.checks import scene_errors
-from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import AxialVibration, Housing
+from sealdyn.scene.forces import Contact
 from sealdyn.scene.patterns import Waviness
 from sealdyn.scene.rings import AxialRunout, Support
-from sealdyn.scene.scene import SceneError
-from sealdyn.scene.variants import counterpart, part, tables_at_end, with_values, without
+from sealdyn.scene.scene import SceneError, counterpart, part, tables_at_end, with_values, without
 
 TEXT = (Path(__file__).parents[2] / "scenarios" / "fms_reference.toml").read_text()
 RAMP = PiecewiseLinear((0.0, 0.5), (100.0, 900.0))

@@ -11,7 +11,7 @@ from importlib.resources import files
 
 import numpy as np
 
-from ...closed_form.narrow_groove import GroovedFace, narrow_groove_gas, narrow_groove_liquid
+from ...closed_form.film import GroovedFace, narrow_groove_gas, narrow_groove_liquid
 from ...faces.pattern import Box, Boxes, Spiral, tee
 from ...films._grooved.balance import Conditions, extrapolated, steady_pair
 from ...films._grooved.motion import Motion

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 from ...dynamics.imposed_motion import rest_state
 from ...dynamics.interface import Interface, flow_at_rest
 from ...faces.geometry import CONTACT_TORQUE, FLOW_INNER, FORCE, TORQUE
-from ...scene.contact import HALF_HEIGHT, Contact
 from ...scene.excitation import Shaft
 from ...scene.film import Film, Reynolds
+from ...scene.forces import HALF_HEIGHT, Contact
 from ...scene.patterns import Waviness
 from ...scene.rings import Stator, Support
 from ...scene.scene import Closing, Scene

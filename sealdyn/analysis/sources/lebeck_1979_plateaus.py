@@ -2,9 +2,9 @@
 
 import math
 
-from ...scene.contact import Contact
 from ...scene.excitation import Shaft
 from ...scene.film import Film, Reynolds
+from ...scene.forces import Contact
 from ...scene.patterns import Waviness
 from ...scene.rings import Stator, Support
 from ...scene.scene import Closing, Scene, SceneError

@@ -8,9 +8,8 @@ from dataclasses import asdict, replace
 
 import numpy as np
 
-from ...dynamics.elastic_ring import operating_point
+from ...dynamics.elastic_ring import design, joined, operating_point, stiffest
 from ...scene.rings import ElasticRing
-from ..wave_design import design, joined, stiffest
 from . import lebeck_1979 as base
 
 TITLE = "Lebeck, Teale & Pierce (1979), ONR ME-95(79)ONR-414-1, ch. 3, driven waves of an elastic ring; 12 x 60 a wave"

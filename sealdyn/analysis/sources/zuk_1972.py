@@ -23,7 +23,7 @@ from ...faces.geometry import (
 from ...films import _gas_dam as sector
 from ...films.gas_dam import film as gas_dam
 from ...scene.film import Film
-from ...scene.gas import Gas, GasDam, viscosity_of
+from ...scene.fluid import Gas, GasDam, viscosity_of
 
 TITLE = "Zuk (1972), NASA TM X-68022, sealing dam at cruise; gas_dam, laminar, width constant (parallel) or zuk"
 FILM = "gas_dam"

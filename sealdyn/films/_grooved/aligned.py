@@ -13,14 +13,13 @@ from functools import cached_property
 
 from ...faces.pattern import Box, Boxes, Dimples, Pattern, Spiral, pumps, tee
 from ...numerics.piecewise_linear import initially
-from ...scene.contact import contact_thresholds
 from ...scene.film import coned
-from ...scene.gas import GasReynolds, gas_of, viscosity_of
+from ...scene.fluid import GasReynolds, gas_of, viscosity_of
+from ...scene.forces import contact_thresholds
 from ...scene.patterns import Grooves, grooves_of
 from ...scene.scene import SceneError
 from .balance import COLUMNS, Conditions, NoSteadyFilm, Steady, extrapolated, order, steady
-from .dimpled_mesh import mesh_on
-from .mesh import Mesh
+from .mesh import Mesh, mesh_on
 from .motion import Motion, axial_film
 
 # Columns of the coarser mesh where a force is wanted at many clearances; e-folds of the clearance from node to node;

@@ -26,8 +26,7 @@ import numpy as np
 from scipy.sparse import csc_array
 from scipy.sparse.linalg import splu
 
-from .dimpled_mesh import mesh_on
-from .mesh import Mesh, tips_of
+from .mesh import Mesh, mesh_on, tips_of
 
 
 @dataclass(frozen=True)

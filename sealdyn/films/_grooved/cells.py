@@ -8,6 +8,7 @@ of the gap state is g' = g e^{-i psi}, and its rate (dg/dt - i W_p g) e^{-i psi}
 
 import math
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 from scipy.sparse import csc_array
@@ -39,7 +40,7 @@ from ...numerics.kernel import inner_kernel
 from ...numerics.piecewise_linear import points
 from ...scene.film import Film as Table
 from ...scene.film import Reynolds
-from ...scene.gas import GasReynolds, gas_of
+from ...scene.fluid import GasReynolds, gas_of
 from ...scene.patterns import Grooves, alike_sectors, grooves_of
 from ...scene.scene import SceneError
 from .._contract import FilmUnknowns
@@ -182,14 +183,24 @@ def links(f):
     and `offsets` (entries,) of the row's pitch from the column's (-1, 0, 1), and of each triangle, row corner and
     column corner the place of its entry (triangles, 3, 3), 0 where a corner is not free: for columns of the first
     pitch, of those between and of the last, whose rows rise each in their own order."""
-    table, free = _of_triangles(f), int(f[FREE])
-    place = of_nodes(f)[PLACE][table[:, CORNERS:SHIFTS].astype(int)].astype(int)
-    ahead = table[:, SHIFTS:LINKS].astype(int)
-    row, column = (np.broadcast_to(part, (len(table), 3, 3)) for part in (place[:, :, None], place[:, None, :]))
+    return _links(*_pitches(f))
+
+
+def _pitches(f) -> tuple[bytes, bytes, int, int]:
+    """What links hang on: places of the nodes among the free ones, corners and shifts of the triangles, numbers of free
+    nodes and of pitches.  A film is asked for often with one mesh."""
+    return of_nodes(f)[PLACE].tobytes(), _of_triangles(f)[:, CORNERS:LINKS].tobytes(), int(f[FREE]), int(f[SECTORS])
+
+
+@lru_cache(maxsize=16)
+def _links(nodes, triangles, free, sectors):
+    corners, ahead = np.split(np.frombuffer(triangles).reshape(-1, LINKS - CORNERS).astype(int), 2, axis=1)
+    place = np.frombuffer(nodes)[corners].astype(int)
+    row, column = (np.broadcast_to(part, (len(corners), 3, 3)) for part in (place[:, :, None], place[:, None, :]))
     offset = np.broadcast_to(ahead[:, :, None] - ahead[:, None, :], row.shape)
     # One pitch has itself to both sides, two have each other.
-    if f[SECTORS] < 3.0:
-        offset = offset % int(f[SECTORS])
+    if sectors < 3:
+        offset = offset % sectors
     taken = (row >= 0) & (column >= 0)
     places, codes = [], []
     for order in ((0, 1, -1), (-1, 0, 1), (1, -1, 0)):
@@ -204,8 +215,12 @@ def links(f):
 
 def pattern_of_rows(f) -> csc_array:
     """Where the residual's derivative may differ from zero, (n, n)."""
-    free, sectors = int(f[FREE]), int(f[SECTORS])
-    keys, offsets, _ = links(f)
+    return _pattern(*_pitches(f))
+
+
+@lru_cache(maxsize=16)
+def _pattern(nodes, triangles, free, sectors) -> csc_array:
+    keys, offsets, _ = _links(nodes, triangles, free, sectors)
     sector = np.arange(sectors)[:, None]
     columns = (sector * free + keys[0]).ravel()
     rows = ((sector + offsets) % sectors * free + keys[1]).ravel()

@@ -5,7 +5,7 @@ Of a gas the unknowns are x = p H of the free nodes (Pa m), p the pressure and H
 cell, so that all that is stored is linear in them; of a liquid, which stores nothing, they are the pressures (Pa).
 The tilt of the gap state enters as g' = g e^{-i psi}, psi the angle of the patterned face, and the moment leaves as
 M = M' e^{i psi}: steps of an integrator see no groove pass.
-**Source** balance.py; gas_reynolds/balance.py of the unknowns; cells.py has the cells.
+**Source** balance.py; gas_reynolds/cells.py of the unknowns; cells.py has the cells.
 **Valid** as balance.py, with tilts, of 3 pitches and more.  A liquid's film is full: where it would tear the run ends.
 """
 
@@ -42,7 +42,7 @@ from ...faces.geometry import (
 )
 from ...numerics.kernel import inner_kernel, outer_kernel, value_kernel
 from ...numerics.piecewise_linear import initially
-from ...scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE, viscosity_of
+from ...scene.fluid import NORMAL_PRESSURE, NORMAL_TEMPERATURE, viscosity_of
 from .._contract import PRESSURE, Film
 from .aligned import MET, OpeningForce
 from .balance import ARRIVED, LEAST, MOST_STEPS, PERMUTATION
@@ -102,6 +102,8 @@ STATUS = {
 PULLED = 1e-3
 # Radii and angles to the pitch at which pressures are shown.
 SHOWN_RADII, SHOWN_ANGLES = 25, 12
+# Least share of a corner at which a point is in this triangle and no other.
+INSIDE = 1e-9
 # Share of the clearance within which the opening force is that of the clearance itself, not read between others.
 NEAR = 0.01
 
@@ -311,6 +313,8 @@ def fields(f, s, x, out):
                     value += share * p[int(k + row[SHIFTS + b]) % sectors, int(row[CORNERS + b])]
                 if least > best:
                     best, out[0, n, m] = least, value
+                if least > INSIDE:
+                    break
 
 
 # --- the steady film -----------------------------------------------------------------------------------

@@ -42,7 +42,7 @@ from ...faces.geometry import (
 )
 from ...numerics.kernel import inner_kernel, value_kernel
 from ...numerics.piecewise_linear import initially
-from ...scene.gas import GasDam, density_of, gas_of, viscosity_of
+from ...scene.fluid import GasDam, density_of, gas_of, viscosity_of
 from .. import _gas_dam as sector
 from .._contract import PRESSURE, Film, force_over_clearance
 from .._gas_dam import STATUS

@@ -1,10 +1,29 @@
-"""Cells over the face: the gas Reynolds film's parameter block, and the film thickness at the cells' nodes.
+"""Cells over the face of the gas Reynolds film: its parameter block, the film thickness at their nodes, and the balance
+of every cell, what it stores is what flows in, with its derivatives and its steady solution.
+
+    d(p h)/dt + wm d(p h)/dtheta = (1/r) d/dr (r h^3 p p_r/(12 mu)) + (1/r^2) d/dtheta (h^3 p p_theta/(12 mu))
+
+**Source** Reynolds' equation of an isothermal ideal gas (Gross, Gas Film Lubrication (1962)), with first-order slip
+(Burgdorfer (1959), J. Basic Eng. 81, 94): h^3 p becomes h^3 p (1 + 6 Kn), Kn = mu sqrt(pi R T/2)/(p h).
 
 Every cell has a node, and both edges of the face are nodes too.  A cell reaches from halfway to the node before to
-halfway to the next, where the difference of two nodes is the slope; the first and the last cell reach to the edge of
-the face, and what flows over that edge is what flows at the half of the way, with the cell's own rate in between.
-Towards the edges the cells get narrower: gas that is squeezed fast escapes from a thin layer there, and a gas that
-expands falls in pressure most before its outlet.
+halfway to the next; the first and the last reach to the edge of the face, and what flows over that edge is what flows
+at the half of the way, with the cell's own rate in between.  Towards the edges the cells get narrower: gas that is
+squeezed fast escapes from a thin layer there, and one that expands falls in pressure most before its outlet.
+
+The unknowns are the products x = p h of the cells (Pa m), those of one angle side by side: what a cell stores is linear
+in them, the gap's rates do not occur, and a film that is shut in answers at once through p = x/h.  From a node to the
+next over the radius p^2 is what a steady flow between faces of constant slope makes of it: there
+
+    flow = 2 h_a^2 h_b^2/(h_a + h_b) (p_a^2 - p_b^2) / (24 mu ln(r_b/r_a))
+
+is exact for parallel faces, and but for 1/r for cones.  Around the circle differences are central ones that are exact
+for tilt, without upwinding: x is smooth there, for nothing holds its pressure at any angle, and what an upwind
+difference damps would be taken for damping of the film.  Below zero, where a solver may try, p |p| stands for p^2, so
+that pressure differences always even out.  Second order in the cells.
+
+Of the steady pressures at a gap state, by Newton's method, angles are taken up from both sides of the first one in
+turn, 0, 1, -1, 2, ...: neighbours on the circle are at most two apart, so that elimination stays in a band.
 """
 
 import math
@@ -12,7 +31,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from ...faces.film_thickness import film_thickness
+from ...faces.film_thickness import film_thickness, waves, waves_rate
 from ...faces.geometry import (
     CLEARANCE,
     CONING_CHANGE,
@@ -26,15 +45,19 @@ from ...faces.geometry import (
     GX_RATE,
     GY,
     GY_RATE,
+    INNER_PRESSURE,
+    MEAN_SPIN,
+    OUTER_PRESSURE,
+    TEMPERATURE,
     TILT_AT_MEAN,
+    VISCOSITY,
     face_parameters,
     regularised_thickness,
 )
-from ...faces.waviness import waves, waves_rate
-from ...numerics.kernel import inner_kernel
+from ...numerics.kernel import inner_kernel, outer_kernel, value_kernel
 from ...numerics.piecewise_linear import points
 from ...scene.film import depth_of
-from ...scene.gas import GasReynolds, gas_of
+from ...scene.fluid import GasReynolds, gas_of
 
 # Block after the faces: cells over the radius, angles, scale of an unknown (Pa m), what slip adds to the flow at a
 # temperature of 1 K (m/s, 0 without), and the steps of differences around the circle: 2 sin(d_theta) of a slope,
@@ -165,3 +188,263 @@ def thickness_rates(f, s, h, rates):
             slope = 1.0 if h[k, j + 1] >= floor else (h[k, j + 1] / floor) ** 2
             coned = s[CONING_RATE] * (radius[j + 1] - radius[0])
             rates[k, j] = slope * (aligned + coned + arm[j + 1] * tilting)
+
+
+# What the balance of a cell has of its unknown and of its neighbours' at the same angle and at the same radius.
+OWN, INNER, OUTER, BEFORE, AFTER = range(5)
+
+
+@inner_kernel()
+def _through(h_a, h_b):
+    """h^3 (m^3) of a film that is linear between two thicknesses, as a flow through it sees it: 1 over the mean of
+    1/h^3."""
+    both = h_a * h_b
+    return 2.0 * both * both / (h_a + h_b)
+
+
+@inner_kernel()
+def pressures(f, s, x, h, p):
+    """Pressures `p` (angles, cells + 2) at the nodes (Pa)."""
+    cells = h.shape[1] - 2
+    for k in range(h.shape[0]):
+        p[k, 0], p[k, cells + 1] = s[INNER_PRESSURE], s[OUTER_PRESSURE]
+        for j in range(cells):
+            p[k, j + 1] = x[k * cells + j] / h[k, j + 1]
+
+
+@inner_kernel()
+def radial_ways(f, s, h, ways, slips):
+    """What the flow (Pa m^3/s per rad) between neighbouring nodes over the radius has of differences of p^2, `ways`,
+    and with slip of p, `slips`, both (angles, cells + 1)."""
+    apart, per, slip = table(f, APART), 1.0 / (24.0 * s[VISCOSITY]), _slip(f, s)
+    for e in range(ways.shape[1]):
+        way, slippery = per / apart[e], slip / apart[e]
+        for k in range(ways.shape[0]):
+            ways[k, e] = way * _through(h[k, e], h[k, e + 1])
+            slips[k, e] = slippery * h[k, e] * h[k, e + 1]
+
+
+@inner_kernel()
+def _ways_around(f, s, h, ways, slips):
+    """The same between each angle and the next, per area (Pa m/s), (angles, cells)."""
+    around, per, slip = table(f, AROUND), 1.0 / (24.0 * s[VISCOSITY] * f[CURVATURE_STEP]), _slip(f, s)
+    slip /= f[CURVATURE_STEP]
+    angles, cells = ways.shape
+    for k in range(angles):
+        after = k + 1 if k < angles - 1 else 0
+        for j in range(cells):
+            h_a, h_b = h[k, j + 1], h[after, j + 1]
+            ways[k, j], slips[k, j] = per * around[j] * _through(h_a, h_b), slip * around[j] * h_a * h_b
+
+
+@inner_kernel()
+def _slip(f, s):
+    """What slip adds to the flow, over h^2 and a difference of p (m/s); the viscosity drops out."""
+    return f[SLIP] * s[TEMPERATURE] ** 0.5
+
+
+@inner_kernel()
+def between(p_a, p_b, way, slip):
+    """Flow from a node to its neighbour."""
+    return way * (p_a * abs(p_a) - p_b * abs(p_b)) + slip * (p_a - p_b)
+
+
+@inner_kernel()
+def state(f, s, x):
+    """What the balances are made of: thicknesses (m) and pressures (Pa) at the nodes, ways and slips over the radius,
+    ways and slips around the circle."""
+    angles, cells = int(f[ANGLES]), int(f[CELLS])
+    h, p = np.empty((angles, cells + 2)), np.empty((angles, cells + 2))
+    thicknesses(f, s, h, np.empty(angles))
+    pressures(f, s, x, h, p)
+    ways, slips = np.empty((angles, cells + 1)), np.empty((angles, cells + 1))
+    radial_ways(f, s, h, ways, slips)
+    ways_around, slips_around = np.empty((angles, cells)), np.empty((angles, cells))
+    _ways_around(f, s, h, ways_around, slips_around)
+    return h, p, ways, slips, ways_around, slips_around
+
+
+@inner_kernel()
+def rates(f, s, x, h, p, ways, slips, ways_around, slips_around, out):
+    """Rates `out` (n,) (Pa m/s) at which the flows across its edges fill every cell, of the `state` at `x`."""
+    angles, cells = int(f[ANGLES]), int(f[CELLS])
+    area, turning = table(f, CORE), s[MEAN_SPIN] / f[SLOPE_STEP]
+    for k in range(angles):
+        after, before = k + 1 if k < angles - 1 else 0, k - 1 if k > 0 else angles - 1
+        arriving = between(p[k, 0], p[k, 1], ways[k, 0], slips[k, 0])
+        for j in range(cells):
+            here = p[k, j + 1]
+            leaving = between(here, p[k, j + 2], ways[k, j + 1], slips[k, j + 1])
+            filled = (arriving - leaving) / area[j]
+            filled += between(p[before, j + 1], here, ways_around[before, j], slips_around[before, j])
+            filled -= between(here, p[after, j + 1], ways_around[k, j], slips_around[k, j])
+            carried = turning * (x[before * cells + j] - x[after * cells + j])
+            out[k * cells + j] = carried + filled
+            arriving = leaving
+
+
+@inner_kernel()
+def slopes(f, s, h, p, ways, slips, ways_around, slips_around, out):
+    """Derivatives `out` (n, 5) of `rates` by each cell's own unknown and its neighbours' (OWN, INNER, ...), 1/s; 0 for
+    the edges of the face."""
+    angles, cells = int(f[ANGLES]), int(f[CELLS])
+    area, turning = table(f, CORE), s[MEAN_SPIN] / f[SLOPE_STEP]
+    for k in range(angles):
+        after, before = k + 1 if k < angles - 1 else 0, k - 1 if k > 0 else angles - 1
+        for j in range(cells):
+            here, inside, outside = p[k, j + 1], p[k, j], p[k, j + 2]
+            row, per = out[k * cells + j], 1.0 / area[j]
+            way = per * (ways[k, j] + ways[k, j + 1]) + ways_around[before, j] + ways_around[k, j]
+            slip = per * (slips[k, j] + slips[k, j + 1]) + slips_around[before, j] + slips_around[k, j]
+            row[OWN] = -_slope(here, h[k, j + 1], way, slip)
+            row[INNER] = per * _slope(inside, h[k, j], ways[k, j], slips[k, j]) if j > 0 else 0.0
+            row[OUTER] = per * _slope(outside, h[k, j + 2], ways[k, j + 1], slips[k, j + 1]) if j < cells - 1 else 0.0
+            way, slip = ways_around[before, j], slips_around[before, j]
+            row[BEFORE] = _slope(p[before, j + 1], h[before, j + 1], way, slip) + turning
+            way, slip = ways_around[k, j], slips_around[k, j]
+            row[AFTER] = _slope(p[after, j + 1], h[after, j + 1], way, slip) - turning
+
+
+@inner_kernel()
+def _slope(p, h, way, slip):
+    """What a flow from a node has of its unknown p h."""
+    return (2.0 * way * abs(p) + slip) / h
+
+
+@value_kernel()
+def residual(f, s, x, x_rate, res):
+    """What every cell stores less what flows into it, per area (Pa m/s)."""
+    rates(f, s, x, *state(f, s, x), res)
+    for i in range(len(res)):
+        res[i] = x_rate[i] - res[i]
+    return 0
+
+
+@value_kernel()
+def jacobian(f, s, x, x_rate, alpha, data):
+    """d residual / d x + alpha d residual / d x_rate, in the order of the pattern (columns, rows rising)."""
+    angles, cells = int(f[ANGLES]), int(f[CELLS])
+    rows, at = np.empty((angles * cells, 5)), 0
+    slopes(f, s, *state(f, s, x), rows)
+    for k in range(angles):
+        after, before = k + 1 if k < angles - 1 else 0, k - 1 if k > 0 else angles - 1
+        for j in range(cells):
+            i = k * cells + j
+            # The angle next door may lie at the other end of the list.
+            if k == angles - 1:
+                data[at], at = -rows[after * cells + j, BEFORE], at + 1
+            if k > 0:
+                data[at], at = -rows[before * cells + j, AFTER], at + 1
+            if j > 0:
+                data[at], at = -rows[i - 1, OUTER], at + 1
+            data[at], at = alpha - rows[i, OWN], at + 1
+            if j < cells - 1:
+                data[at], at = -rows[i + 1, INNER], at + 1
+            if k < angles - 1:
+                data[at], at = -rows[after * cells + j, BEFORE], at + 1
+            if k == 0:
+                data[at], at = -rows[before * cells + j, AFTER], at + 1
+
+
+# Newton's steps, the change of a pressure after which only rounding is left, and how near to zero a step may take a
+# pressure; the change from which on what closing adds counts fully.
+MOST_STEPS, ARRIVED, NEAREST, NEAR = 200, 1e-9, 0.1, 0.01
+# Least pressure, and least pressure of which flows have their slope, as shares of the lower one of the edges.
+LEAST, SLOPED = 1e-6, 1e-3
+UNSOLVED = 1
+
+
+@inner_kernel()
+def _place(k, angles):
+    """Place in the band of angle k."""
+    return 2 * k - 1 if 0 < k <= angles // 2 else 2 * (angles - k) % (2 * angles)
+
+
+@inner_kernel()
+def _eliminate(band, y):
+    """Solve with a band matrix (n, 2 width + 1), its diagonal in the middle, and `y` (n,), both of which it spoils; the
+    solution is left in `y`.  Returns whether all pivots are numbers other than 0."""
+    n, width = band.shape[0], band.shape[1] // 2
+    for i in range(n):
+        pivot = band[i, width]
+        if not abs(pivot) > 0.0:
+            return False
+        last = min(width, n - 1 - i)
+        for down in range(1, last + 1):
+            share = band[i + down, width - down] / pivot
+            if share != 0.0:
+                for across in range(1, last + 1):
+                    band[i + down, width - down + across] -= share * band[i, width + across]
+                y[i + down] -= share * y[i]
+    for i in range(n - 1, -1, -1):
+        for across in range(1, min(width, n - 1 - i) + 1):
+            y[i] -= band[i, width + across] * y[i + across]
+        y[i] /= band[i, width]
+    return True
+
+
+@inner_kernel()
+def _first(f, s, x):
+    """Pressures of a flow over the radius alone between still faces: p^2 falls with the way."""
+    angles, cells = int(f[ANGLES]), int(f[CELLS])
+    p_i, p_o = s[INNER_PRESSURE], s[OUTER_PRESSURE]
+    h, _, ways, _, _, _ = state(f, s, x)
+    for k in range(angles):
+        total, reached = np.sum(1.0 / ways[k]), 0.0
+        for j in range(cells):
+            reached += 1.0 / (ways[k, j] * total)
+            x[k * cells + j] = h[k, j + 1] * (p_i * p_i + reached * (p_o * p_o - p_i * p_i)) ** 0.5
+
+
+@outer_kernel()
+def start(f, s, x):
+    """Unknowns `x` (n,) of the steady film at a gap state: p h_t + wm d(p h)/dtheta = what flows in.  A film that opens
+    so fast that it would be drawn empty keeps the least pressure.  Returns 0, or a code where none is found."""
+    angles, cells = int(f[ANGLES]), int(f[CELLS])
+    n, width = angles * cells, 2 * cells
+    x[:] = 0.0
+    _first(f, s, x)
+    h, h_rate = np.empty((angles, cells + 2)), np.empty((angles, cells))
+    thicknesses(f, s, h, np.empty(angles))
+    thickness_rates(f, s, h, h_rate)
+    left, rows, band, y = np.empty(n), np.empty((n, 5)), np.empty((n, 2 * width + 1)), np.empty(n)
+    far, strayed, low = True, False, min(s[INNER_PRESSURE], s[OUTER_PRESSURE])
+    for _ in range(MOST_STEPS):
+        now = state(f, s, x)
+        rates(f, s, x, *now, left)
+        # Where no pressure is left, a flow does not know its slope.
+        _, p, ways, slips, ways_around, slips_around = now
+        slopes(f, s, h, np.maximum(p, SLOPED * low), ways, slips, ways_around, slips_around, rows)
+        band[:] = 0.0
+        for k in range(angles):
+            here = _place(k, angles) * cells
+            after, before = _place((k + 1) % angles, angles) * cells, _place((k - 1) % angles, angles) * cells
+            for j in range(cells):
+                i, at = k * cells + j, here + j
+                squeezed = h_rate[k, j] / h[k, j + 1]
+                y[at] = left[i] - squeezed * x[i]
+                # Far below its pressure a film that closes would be driven farther down by what closing has of it.
+                band[at, width] = (max(squeezed, 0.0) if far else squeezed) - rows[i, OWN]
+                if j > 0:
+                    band[at, width - 1] -= rows[i, INNER]
+                if j < cells - 1:
+                    band[at, width + 1] -= rows[i, OUTER]
+                band[at, width + after - here] -= rows[i, AFTER]
+                band[at, width + before - here] -= rows[i, BEFORE]
+        if not _eliminate(band, y):
+            return UNSOLVED
+        change = highest = 0.0
+        for k in range(angles):
+            for j in range(cells):
+                i, before = k * cells + j, x[k * cells + j]
+                x[i] = max(before + y[_place(k, angles) * cells + j], NEAREST * before, LEAST * low * h[k, j + 1])
+                change = max(change, abs(x[i] - before) / h[k, j + 1])
+                highest = max(highest, x[i] / h[k, j + 1])
+        if not change < np.inf:
+            return UNSOLVED
+        if change < ARRIVED * highest:
+            return 0
+        # Once has shown whether it may count.
+        strayed |= not far and change > NEAR * highest
+        far = strayed or change > NEAR * highest
+    return UNSOLVED

@@ -1,6 +1,6 @@
 """Gas film with storage: the unsteady isothermal Reynolds equation over radius and angle, integrated with the rings.
 
-**Source** balance.py; the cells are in cells.py.
+**Source** cells.py.
 **Valid** isothermal ideal gas at the film's temperature, laminar, without inertia (no choking: "gas_dam"), with slip
 down to films of some mean free paths; faces with coning, a profile, tilt, pads, and waves that stand still
 (passing ones leave no steady film to start from and to linearise about), in cylindrical geometry.
@@ -13,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.sparse import csc_array
 
+from ...faces.film_thickness import lay_waves
 from ...faces.geometry import (
     CAVITATED,
     FLOW_INNER,
@@ -29,13 +30,11 @@ from ...faces.geometry import (
     TORQUE,
     VISCOSITY,
 )
-from ...faces.waviness import lay_waves
 from ...numerics.kernel import inner_kernel, outer_kernel, value_kernel
 from ...numerics.piecewise_linear import initially
-from ...scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE, GasReynolds, viscosity_of
+from ...scene.fluid import NORMAL_PRESSURE, NORMAL_TEMPERATURE, GasReynolds, viscosity_of
 from .._contract import PRESSURE, Film, FilmUnknowns, force_over_clearance
 from . import OFFER
-from .balance import UNSOLVED, between, jacobian, pressures, radial_ways, residual, start
 from .cells import (
     ANGLES,
     AREA,
@@ -48,9 +47,16 @@ from .cells import (
     SCALE,
     SLOPE_STEP,
     TURNED,
+    UNSOLVED,
+    between,
+    jacobian,
     pads,
     parameters,
+    pressures,
+    radial_ways,
+    residual,
     sines,
+    start,
     table,
     thicknesses,
 )

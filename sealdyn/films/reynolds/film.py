@@ -13,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...faces.contact import lay_asperities
+from ...faces.film_thickness import lay_waves
 from ...faces.geometry import (
     CLEARANCE,
     FORCE,
@@ -25,7 +26,6 @@ from ...faces.geometry import (
     SPIN_DIFFERENCE,
     VISCOSITY,
 )
-from ...faces.waviness import lay_waves
 from ...numerics.kernel import outer_kernel, value_kernel
 from ...numerics.piecewise_linear import initially
 from ...scene.film import AROUND, PER_WAVE, Reynolds, cells_of
@@ -34,8 +34,6 @@ from ...scene.scene import SceneError
 from .._contract import FILL, PRESSURE, Film, FilmUnknowns, force_over_clearance
 from . import OFFER
 from .balance import driest, jacobian, pattern, residual
-from .cavitation import ALIKE, STATUS, UNSOLVED, between, keep_void, settle, solve, solve_moving
-from .cavitation import unknowns as first_unknowns
 from .mesh import (
     ANGLE_STEP,
     ANGLES,
@@ -54,7 +52,21 @@ from .mesh import (
     parameters,
     table,
 )
-from .pressure import flow, line_load, sum_up, wrench
+from .pressure import (
+    ALIKE,
+    STATUS,
+    UNSOLVED,
+    between,
+    flow,
+    keep_void,
+    line_load,
+    settle,
+    solve,
+    solve_moving,
+    sum_up,
+    wrench,
+)
+from .pressure import unknowns as first_unknowns
 
 
 def accepts(film, waves=()) -> str:

@@ -19,7 +19,7 @@ import math
 
 import numpy as np
 
-from ...faces.film_thickness import film_thickness
+from ...faces.film_thickness import film_thickness, waves, waves_rate, waves_turn
 from ...faces.geometry import (
     CLEARANCE,
     CONING_CHANGE,
@@ -42,7 +42,6 @@ from ...faces.geometry import (
     face_parameters,
     regularised_thickness,
 )
-from ...faces.waviness import waves, waves_rate, waves_turn
 from ...numerics.kernel import inner_kernel
 from ...numerics.piecewise_linear import points
 from ...scene.film import Reynolds, cells_of

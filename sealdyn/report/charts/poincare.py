@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
-from ...numerics.order_spectrum import cubic
+from ...numerics.time_series import cubic
 from .page import EVEN, FILM, THICKNESS, TILT, absent, look, run_page, save
 from .record import Run
 

@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib.ticker import NullLocator
 
-from ...numerics.order_spectrum import FOLDED, at_the_edge, located, order_spectrum, peaks
+from ...numerics.time_series import FOLDED, at_the_edge, located, order_spectrum, peaks
 from ...quantities import in_words
 from .page import CONTACT, FILM, LEAK, TILT, absent, decades, look, number, run_page, save, written
 from .record import Run

@@ -14,7 +14,7 @@ import numpy as np
 
 from ...dynamics.intervals import time_of_angle
 from ...extensions import OutsideError, folders, outside_module
-from ...scene.loads import LOAD_COLUMNS, Load, LoadSamples
+from ...scene.forces import LOAD_COLUMNS, Load, LoadSamples
 from ...scene.rings import RING_NAMES
 from ...scene.scene import Scene, SceneError
 

@@ -14,11 +14,11 @@ import numpy as np
 from pydantic import Field
 
 from ...answers import Answer, Table, table_of
-from ...numerics.order_spectrum import FOLDED
 from ...numerics.piecewise_linear import PiecewiseLinear
+from ...numerics.time_series import FOLDED
 from ...quantities import in_words
 from ...scenario.settings import si_unit
-from ...scene.variants import part, with_values
+from ...scene.scene import part, with_values
 from ...status import Status
 from ...units import Angle, Time
 from .. import Info

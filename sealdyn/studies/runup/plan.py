@@ -11,8 +11,8 @@ from ...numerics.piecewise_linear import PiecewiseLinear
 from ...scenario.errors import ScenarioError
 from ...scenario.reader import with_values
 from ...scenario.settings import si_unit, values_in_si
-from ...scene import variants
-from ...scene.variants import part
+from ...scene import scene as scenes
+from ...scene.scene import part
 from ...simulation.stability import critical_speed, resonance_speeds
 from .ramp_run import tables_end
 from .speed_ramp import Steady, followed_mode, touch_tilt
@@ -126,7 +126,7 @@ def planned(scenario, settings) -> dict:
         least = _turns(begin, end, 1.0) / MOST_TURNS
         raise wrong(scenario, "rates", f"{rates[0]:.4g} rad/s^2: {slow:.3g} turns each way",
                     f"a rate above {least:.3g} rad/s^2, or a shorter way from begin to end")  # fmt: skip
-    still = tables_end(variants.with_values(scenario.scene, {SPEED: begin}))
+    still = tables_end(scenes.with_values(scenario.scene, {SPEED: begin}))
     settle = max(still, SETTLE * 2 * math.pi / max(begin, 0.05 * end))
     changed = _tilted(scenario, steady, crossing)
     needed = max(FINE * disturbance / scale, FINEST)

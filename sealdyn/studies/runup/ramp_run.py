@@ -36,7 +36,7 @@ from ...faces.geometry import (
 )
 from ...numerics.piecewise_linear import PiecewiseLinear
 from ...scenario.reader import with_values
-from ...scene import variants
+from ...scene import scene as scenes
 from ...simulation.margin import steady_extremes
 from ...simulation.selection import prepare_run
 from ...solvers.contract import Status
@@ -260,11 +260,11 @@ def _visited(scenario, key, values) -> tuple[RunState, list[int]]:
     """The scene with its own tables and behind them a staircase of values of the key, and the segments that begin
     there:
     the closing force stays the law that the scene's start decides, as it does on a trip."""
-    first = tables_end(variants.with_values(scenario.scene, {key: float(values[0])}))
+    first = tables_end(scenes.with_values(scenario.scene, {key: float(values[0])}))
     times = [first + n for n in range(len(values))]
     points = [(0.0, values[0])] * (first > 0.0) + list(zip(times, values, strict=True))
     stairs = PiecewiseLinear(*(tuple(map(float, column)) for column in zip(*points, strict=True)))
-    run = RunState(Model(variants.with_values(scenario.scene, {key: stairs})), times[-1] + 1e-3)
+    run = RunState(Model(scenes.with_values(scenario.scene, {key: stairs})), times[-1] + 1e-3)
     return run, [next(k for k, part in enumerate(run.intervals) if part.time >= t - 1e-6) for t in times]
 
 

@@ -31,8 +31,7 @@ from ...numerics.piecewise_linear import initially
 from ...quantities import in_words
 from ...scene.film import coned
 from ...scene.rings import RING_NAMES, ROTOR, STATOR, Rotor, Stator, Support
-from ...scene.scene import Initial, RingStart, Scene, SceneError
-from ...scene.variants import refuse_uneven
+from ...scene.scene import Initial, RingStart, Scene, SceneError, refuse_uneven
 from ...simulation.selection import choose_method
 from ...solvers.contract import Recorder, Status
 from ...solvers.integrate import solve

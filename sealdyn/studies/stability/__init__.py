@@ -24,8 +24,7 @@ from ...scenario.settings import axis
 from ...scenario.tables import kind_of_scene
 from ...scene.excitation import Housing, Shaft
 from ...scene.patterns import grooves_of
-from ...scene.scene import SceneError
-from ...scene.variants import arrangement, frozen_at_start
+from ...scene.scene import SceneError, arrangement, frozen_at_start
 from ...simulation.selection import choose_method
 from ...simulation.stability import critical_speed, speeds_held, whirl_ratio
 from ...units import quantity_of

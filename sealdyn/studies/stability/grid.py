@@ -13,15 +13,14 @@ from itertools import product
 import numpy as np
 
 from ... import closed_form as cf
-from ...dynamics.characteristic import roots
+from ...dynamics.exponents import roots
 from ...dynamics.linearisation import moves_with_speed
 from ...dynamics.model import Model
 from ...scenario.errors import ScenarioError
 from ...scenario.reader import with_values
-from ...scene.contact import HALF_HEIGHT
 from ...scene.film import coning_varies
-from ...scene.scene import SceneError
-from ...scene.variants import frozen_at_start, refuse_uneven
+from ...scene.forces import HALF_HEIGHT
+from ...scene.scene import SceneError, frozen_at_start, refuse_uneven
 
 INERTIA_RATIO = "inertia_ratio"
 BLOCK = 100_000

@@ -14,7 +14,7 @@ from ...scenario.errors import ScenarioError, diameters, nearest, nearest_of, ta
 from ...scenario.overrides import radius_key
 from ...scenario.own_options import with_options
 from ...scenario.tables import outside_of
-from ...scene import variants
+from ...scene import scene as scenes
 from ...scene.scene import Scene
 from ...units import Length, Quantity, QuantityError, quantity_of, quoted
 
@@ -108,7 +108,7 @@ class _Entry:
             raise self.wrong(f"an unknown key {self.key}", f"a key of the scene; {hint}")
         last = radius_key(kind, self.key).rpartition(".")[2]
         try:
-            owner = variants.part(self.scenario.scene, table) if table else self.scenario.scene
+            owner = scenes.part(self.scenario.scene, table) if table else self.scenario.scene
             kind = typing.get_type_hints(type(owner), include_extras=True)[last]
         except (AttributeError, IndexError, KeyError, ValueError):
             raise self.wrong(f"{self.key}", f"a key of a table that the scenario has: no {table}") from None
@@ -153,7 +153,7 @@ class _Entry:
 
     def _own(self) -> float:
         radius = radius_key(self._kind(), self.key)
-        value = variants.part(self.scenario.scene, radius)
+        value = scenes.part(self.scenario.scene, radius)
         if not isinstance(value, int | float):
             found = "no value" if value is None else "a function of time"
             raise self.wrong(f"{found} of {self.key} in the scenario", FORMS[self.kind])

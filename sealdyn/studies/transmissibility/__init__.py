@@ -8,7 +8,7 @@ forcing in the forcing's own frame, against the sense of the shaft's rotation; 0
 Three independent methods: formula, harmonic balance, and the equations of motion in time.
 At the scenario's speed also Green's groups, the coning of the stiffest film, and the inertia ratio of a floating rotor.
 **Source** Green (1989), Fig. 8 and Table 1; the phases are the arguments of the same quotients; FMSR, of which he only
-expects that it is better than both, closed_form/response.py.
+expects that it is better than both, closed_form/tilting_ring.py.
 """
 
 from dataclasses import dataclass
@@ -22,11 +22,11 @@ from ... import closed_form as cf
 from ...answers import Answer, Axis, Level, Panel, Series, Table
 from ...dynamics.linearisation import moves_with_speed
 from ...quantities import in_words, reading_in
-from ...scene.contact import touch_height
 from ...scene.film import aligned_gaps, coning_change
+from ...scene.forces import touch_height
 from ...scene.patterns import grooves_of
 from ...scene.rings import SMALL_TILT
-from ...scene.variants import arrangement, frozen_at_start
+from ...scene.scene import arrangement, frozen_at_start
 from ...simulation.stability import held_speeds
 from ...units import Speed
 from .. import Info
@@ -39,6 +39,7 @@ from .arrangements import (
     phases_apart,
     points_in_time,
     seals_of,
+    seals_over_grooves,
 )
 from .choices import UNITS, choice_tables, choices
 
@@ -156,12 +157,7 @@ def run(scenario, settings, tools) -> Answer:
 
 
 def _seals(scene, grooved: bool) -> dict[str, Arrangement]:
-    if not grooved:
-        return seals_of(scene)
-    # Sparse matrices are loaded for grooves only.
-    from .over_grooves import seals_over_grooves
-
-    return dict(seals_over_grooves(scene))
+    return dict(seals_over_grooves(scene)) if grooved else seals_of(scene)
 
 
 # --- which is best ------------------------------------------------------------------------------------

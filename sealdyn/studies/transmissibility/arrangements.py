@@ -1,9 +1,11 @@
 """The arrangements of a seal, its rotor flexible, its stator or both: linear answers, closed forms, amplitudes and
-phases of relative tilts over speed, and those of one arrangement from runs in time."""
+phases of relative tilts over speed, and those of one arrangement from runs in time; over grooves the answers of rings
+on the film of one pitch, which follows the speed under one closing force."""
 
 import math
 from dataclasses import replace
 from functools import partial
+from itertools import pairwise
 
 import numpy as np
 
@@ -18,10 +20,16 @@ from ...dynamics.signals import signals
 from ...quantities import in_words
 from ...scene.excitation import Housing
 from ...scene.film import Coefficients, aligned_gaps, coned, coning_change
-from ...scene.gas import viscosity_of
+from ...scene.fluid import viscosity_of
 from ...scene.rings import RING_NAMES, ROTOR, STATOR
-from ...scene.scene import Initial, Scene
-from ...scene.variants import frozen_at_start, refuse_uneven, with_both_flexible_rings, with_single_flexible_ring
+from ...scene.scene import (
+    Initial,
+    Scene,
+    frozen_at_start,
+    refuse_uneven,
+    with_both_flexible_rings,
+    with_single_flexible_ring,
+)
 from ...simulation.selection import choose_method
 from ...simulation.stability import critical_speed
 from ...solvers.contract import Recorder, Status
@@ -72,7 +80,7 @@ class Arrangement:
         """The same by the quotients of Green (1989) whose amplitudes `closed_form` gives, of two floating rings by
         fmsr_relative_tilts; complex, shape (2, n), at speeds (n,) (rad/s).
 
-        **Source**, **Valid** closed_form/response.py, closed_form/response.py.
+        **Source**, **Valid** closed_form/tilting_ring.py.
         """
         if self.name == "fmsr":
             rotor, stator = map(tilting, (self.scene.rotor, self.scene.stator))
@@ -333,3 +341,70 @@ def phases_apart(one, other) -> float:
     """Largest distance (deg) of two rows of phases: 359 deg apart is 1 deg apart."""
     away = np.abs(np.asarray(one) - other) % 360.0
     return float(np.max(np.minimum(away, 360.0 - away)))
+
+
+class OverGrooves(Arrangement):
+    """One arrangement; `film` (FilmOverSpeed) at any speed is that of all of them."""
+
+    def __init__(self, scene: Scene, name: str, film):
+        # What solves over grooves is loaded for seals that have some.
+        from .._grooved_roots import RootsOverSpeed
+
+        super().__init__(scene, name)
+        self.roots, self.rates = RootsOverSpeed(self.scene, film), {}
+
+    def relative_tilts(self, speed: float) -> tuple[complex, complex]:
+        """As of Arrangement, with 3 grooves and more; of fewer the part at the forcing's own frequency."""
+        from ...films._grooved.motion import relative_tilt, support_law
+        from .._grooved_roots import rings_of
+
+        motions = self.roots.film(speed)[2]
+        rings = rings_of(frozen_at_start(self.scene, speed=speed))
+        floats = [name for name in ("stator", "rotor") if getattr(self.scene, name).support is not None]
+
+        def answers(motion):
+            found = []
+            for name, frequency, sign in (("stator", self.stator_speed, 1.0), ("rotor", speed, -1.0)):
+                if name in floats:
+                    k = floats.index(name)
+                    moment, ahead = rings[k].angular_stiffness, (rings[k], *rings[:k], *rings[k + 1 :])
+                else:
+                    moment, ahead = support_law(rings[0], 1j * frequency), rings
+                found.append(sign * relative_tilt(motion, ahead, moment, frequency)[0])
+            return np.array(found)
+
+        static, dynamic = motions.of_motion(answers)[0]
+        return complex(static), complex(dynamic)
+
+    def growth(self, speed: float) -> float:
+        """Growth rate (1/s) of the least damped tilt."""
+        if speed not in self.rates:
+            self.rates[speed] = self.roots.growth(speed)
+        return self.rates[speed]
+
+    def critical_speed(self) -> float | None:
+        """Lowest speed (rad/s) of those looked at from which on a tilt grows."""
+        known = sorted(self.rates)
+        for low, high in pairwise(known):
+            if self.rates[low] < 0.0 <= self.rates[high]:
+                return self.roots.threshold(low, high)
+        return None
+
+    def film_numbers(self, speed) -> tuple[np.ndarray, np.ndarray]:
+        """Tilt stiffness (N m/rad) and damping (N m s/rad) of the film at speeds (rad/s), once per turn."""
+        films = [self.roots.film(float(w))[2].of_motion(lambda motion, w=w: np.array(motion.matrices(abs(w))))[0]
+                 for w in np.atleast_1d(speed)]  # fmt: skip
+        return tuple(np.array([film[k][1, 1] for film in films]).reshape(np.shape(speed)) for k in (0, 1))
+
+    def formula_holds(self, speed: float) -> bool:
+        """Never: no closed form has grooves."""
+        return False
+
+
+def seals_over_grooves(scene: Scene) -> dict[str, OverGrooves]:
+    """The arrangements of a scene, as of `seals_of`, on one film."""
+    from .._grooved_roots import FilmOverSpeed
+
+    scene = quiet(scene)
+    film = FilmOverSpeed(scene)
+    return {name: OverGrooves(scene, name, film) for name in SEALS}

@@ -16,7 +16,7 @@ from ...dynamics.interface import prepared
 from ...dynamics.linearisation import moves_with_speed
 from ...scene.film import Coefficients, coned
 from ...scene.rings import ROTOR
-from ...scene.variants import frozen_at_start
+from ...scene.scene import frozen_at_start
 from .arrangements import SEALS, Arrangement, groups
 
 # Conings looked at, of the stiffest narrow film's; how well the best is found.  Ratios I/J, from the disk's on.

@@ -17,7 +17,7 @@ from scipy.optimize import brentq, minimize_scalar
 from ...answers import Answer, Axis, Level, Panel, Series, Table, table_of
 from ...quantities import in_words
 from ...scenario.errors import ScenarioError
-from ...scene.variants import arrangement
+from ...scene.scene import arrangement
 from ...units import Acceleration, Frequency
 from .. import Info
 from .shaken_seal import ShakenSeal, measured

@@ -23,12 +23,11 @@ from ...dynamics.modes import Harmonic, verdict
 from ...dynamics.run_state import RunState
 from ...faces.geometry import DZ, GX, GY
 from ...quantities import in_words
-from ...scene.contact import touch_height
 from ...scene.excitation import AngularVibration, AxialVibration, Housing
+from ...scene.forces import touch_height
 from ...scene.patterns import waves_of
 from ...scene.rings import STATOR
-from ...scene.scene import Initial, Scene, SceneError
-from ...scene.variants import frozen_at_start, unforced
+from ...scene.scene import Initial, Scene, SceneError, frozen_at_start, unforced
 from ...simulation.margin import steady_extremes
 from ...simulation.selection import choose_method
 from ...simulation.verification_run import price

@@ -91,8 +91,7 @@ def run(scenario, settings, tools) -> Answer:
     # Worn at the temperature of the unworn faces.
     scene, warm = at_work(scenario.scene)
     if waves_of(scene):
-        from .waves import BalancesOfWaves
-        from .wavy_answer import answer_of
+        from .waves import BalancesOfWaves, answer_of
 
         balances = BalancesOfWaves(scene, radius, settings.harmonics, settings.travelling)
         control = Control(rough, settings.accuracy, settings.step * rough)

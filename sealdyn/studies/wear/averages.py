@@ -21,8 +21,8 @@ from ...dynamics.run_state import RunState
 from ...dynamics.signals import signals
 from ...faces import contact
 from ...faces.geometry import FORCE, PROFILE_DEPTHS, SPIN_DIFFERENCE, WEAR, smallest_gap
-from ...scene.contact import contact_thresholds
 from ...scene.film import Profile
+from ...scene.forces import contact_thresholds
 from ...scene.scene import Closing, Initial, SceneError
 from ...simulation.selection import choose_method
 from ...solvers.contract import Cause, Recorder, Status

@@ -20,8 +20,8 @@ from ...scene.scene import SceneError
 from ...simulation.film_error import reynolds_comparison
 from ...simulation.result import libraries
 from ...simulation.selection import check_method, choose_method, prepare_run
-from ...solvers.collocation import collocation
 from ...solvers.fixed_step import REFERENCE_METHODS
+from ...solvers.own_methods import collocation
 from ...status import Status
 from .. import Info
 from . import film_ladder

@@ -12,9 +12,9 @@ from ...scenario.reader import with_values
 from ...scene.film import Coefficients
 from ...scene.patterns import waves_of
 from ...simulation.selection import prepare_run
-from ...solvers.collocation import collocation
 from ...solvers.contract import tolerance_for
 from ...solvers.methods import METHODS
+from ...solvers.own_methods import collocation
 from ...status import Status
 from .observation import errors, observe, worst
 

@@ -30,7 +30,7 @@ DRAWN = 5
 APART = 20
 # What the verbs load: once, and not in every fork that is one.
 LOADED = (
-    "sealdyn.cli", "sealdyn.analysis.check", "sealdyn.report.review", "sealdyn.report.comparison", "rich.progress",
+    "sealdyn.cli", "sealdyn.analysis.desk", "sealdyn.report.review", "sealdyn.report.comparison", "rich.progress",
     "sealdyn.report.charts.overview", "sealdyn.report.charts.orbit", "sealdyn.report.panels", "matplotlib.figure",
     "matplotlib.backends.backend_agg", "sealdyn.studies.equilibrium",
 )  # fmt: skip

@@ -7,7 +7,7 @@ import time
 from functools import cache, partial
 from pathlib import Path
 
-from sealdyn.analysis.check import checked
+from sealdyn.analysis.desk import checked
 from sealdyn.scenario.errors import is_list, tables
 from sealdyn.scenario.reader import Scenario, parse_scenario
 from sealdyn.scenario.tables import RadialFile, ScenarioFile

@@ -14,10 +14,10 @@ from ....dynamics.model import Model
 from ....dynamics.run_state import RunState
 from ....films import film_named
 from ....quantities import everyday, in_words
-from ....scene.contact import Contact
 from ....scene.excitation import Shaft
 from ....scene.film import Film
-from ....scene.gas import GasReynolds
+from ....scene.fluid import GasReynolds
+from ....scene.forces import Contact
 from ....scene.rings import ElasticRing, Stator, Support
 from ....scene.scene import Closing, Initial, RingStart, Scene, SceneError
 from ....simulation.film_error import steady_tilt

@@ -32,8 +32,8 @@ from ....films.gas_reynolds.cells import GRADING
 from ....films.reynolds.mesh import AREA, SECTORS, films, table
 from ....quantities import in_words
 from ....scene.film import Film
-from ....scene.gas import GasReynolds, gas_of
-from ....solvers.trbdf2 import D, W
+from ....scene.fluid import GasReynolds, gas_of
+from ....solvers.own_methods import D, W
 from . import row
 
 # --- choked gas ---

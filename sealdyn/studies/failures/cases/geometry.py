@@ -45,7 +45,7 @@ from ....scenario.reader import Scenario
 from ....scenario.tables import Run
 from ....scene.excitation import AxialVibration, Housing, Shaft
 from ....scene.film import Film
-from ....scene.gas import viscosity_of
+from ....scene.fluid import viscosity_of
 from ....scene.patterns import waves_of
 from ....scene.rings import ROTOR, Rotor, Stator, Support
 from ....scene.scene import Scene

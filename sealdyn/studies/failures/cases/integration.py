@@ -13,9 +13,8 @@ from ....dynamics.run_state import RunState
 from ....dynamics.signals import signals
 from ....numerics.piecewise_linear import PiecewiseLinear
 from ....quantities import in_words
-from ....scene.contact import Contact, contact_thresholds
+from ....scene.forces import Contact, SecondarySeal, contact_thresholds
 from ....scene.rings import RING_NAMES, AxialRunout, Rotor, Stator
-from ....scene.secondary_seal import SecondarySeal
 from ....simulation.selection import choose_method
 from ....simulation.stability import critical_speed
 from ....solvers.contract import Counts, SolverFailure, Status
