@@ -156,7 +156,8 @@ def _segregated(segment, tau, y, method, tolerance, counts):
     Euler in the gap of these; the rings by the implicit midpoint rule under its force and moments at the step's end.
     **Source** Piperno, Farhat & Larrouturou (1995), Comput. Methods Appl. Mech. Engrg 124, 79, with their predictor's
     alpha_0 = 1, alpha_1 = 0; Felippa, Park & Farhat (2001), ibid. 190, 3247.
-    **Valid** first order; stiffness and damping of the film are explicit, which limits the step where rings are light.
+    **Valid** first order, so errors follow the root of the tolerance; stiffness and damping of the film are explicit,
+    which limits the step: at light rings, and under liquids far below what pays.
     The segment has a `film_step` and `rates_under` a load (dynamics/coupled_segment.py).
     """
     if np.any(segment.lacks_inertia):
