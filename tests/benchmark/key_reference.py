@@ -11,10 +11,9 @@ import re
 from pathlib import Path
 
 from sealdyn import read_scenario
-from sealdyn.scenario.schema import json_schema
 from sealdyn.scenario.tables import RadialFile
 from sealdyn.studies import study_names
-from sealdyn.studies._declared import about, settings_of, time_of
+from sealdyn.studies._declared import about, json_schema, settings_of, time_of
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 PAGE = SCENARIOS / "README.md"

@@ -7,7 +7,7 @@ import pytest
 
 import sealdyn
 from sealdyn.scenario.reader import ScenarioError, parse_scenario, with_values
-from sealdyn.scenario.schema import json_schema
+from sealdyn.studies._declared import json_schema
 from sealdyn.studies.tolerance.scatter import read_scatter
 
 FMR = (Path(__file__).parents[2] / "scenarios" / "fmr_reference.toml").read_text()

@@ -10,9 +10,9 @@ import sealdyn
 from sealdyn.archive import ArchiveError, ArchiveWriter, is_study, read_info, read_study, write_study
 from sealdyn.archive.run import Series
 from sealdyn.scenario.reader import Scenario, ScenarioError, parse_scenario
-from sealdyn.scenario.schema import json_schema
 from sealdyn.scenario.tables import SCHEMA
 from sealdyn.scenario.templates import kinds, template
+from sealdyn.studies._declared import json_schema
 
 FMS = template("fms")
 (SAID,) = [line for line in FMS.splitlines(keepends=True) if line.startswith("schema")]

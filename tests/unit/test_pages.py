@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from benchmark import gallery, key_reference, typed_settings
 
-from sealdyn.scenario.schema import json_schema
 from sealdyn.scenario.tables import RadialFile
+from sealdyn.studies._declared import json_schema
 
 
 @pytest.mark.parametrize("made", [gallery, key_reference, typed_settings], ids=lambda made: made.__name__)

@@ -8,12 +8,12 @@ from scenes import film, fmr, started
 
 from sealdyn.report.text import resolved_lines
 from sealdyn.scenario.reader import ScenarioError, parse_scenario
-from sealdyn.scenario.schema import json_schema
 from sealdyn.scenario.tables import Run
 from sealdyn.scene.film import Profile
 from sealdyn.scene.forces import Contact
 from sealdyn.scene.scene import SceneError
 from sealdyn.simulation.selection import select_film
+from sealdyn.studies._declared import json_schema
 
 SCENARIO = """
 [shaft]

@@ -11,7 +11,7 @@ import pytest
 
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scenario.reader import ScenarioError, parse_scenario, read_scenario
-from sealdyn.scenario.schema import json_schema
+from sealdyn.studies._declared import json_schema
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 FMR = (SCENARIOS / "fmr_reference.toml").read_text()

@@ -67,7 +67,7 @@ OF_OTHERS = (
 
 
 # Files of the package, without those that only name a folder: 145 once.
-MOST_FILES = 85
+MOST_FILES = 86
 FOLDERS = {f"{path.parent.relative_to(ROOT)}".replace("/", ".") for path in ROOT.glob("sealdyn/**/__init__.py")}
 
 

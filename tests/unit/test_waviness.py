@@ -29,7 +29,6 @@ from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.report.charts import film as film_chart
 from sealdyn.report.charts.record import Run
 from sealdyn.scenario.reader import ScenarioError, parse_scenario
-from sealdyn.scenario.schema import json_schema
 from sealdyn.scene.excitation import Shaft, Whirl
 from sealdyn.scene.film import Profile
 from sealdyn.scene.forces import Contact
@@ -39,6 +38,7 @@ from sealdyn.scene.scene import SceneError
 from sealdyn.scene.tabulated import Tabulated
 from sealdyn.solvers.contract import Block, Counts
 from sealdyn.solvers.methods import METHODS
+from sealdyn.studies._declared import json_schema
 from sealdyn.studies._runner import run_study
 
 UM = 1e-6
