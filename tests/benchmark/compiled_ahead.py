@@ -19,10 +19,10 @@ from sealdyn.kernel_cache import compiling
 COUNT = """
 import json, sys
 from sealdyn import cli, kernel_cache
-from sealdyn.analysis import check
+from sealdyn.analysis import desk
 
-shipped = check.shipped_paths
-check.shipped_paths = lambda: {name: path for name, path in shipped().items() if name in NAMES}
+shipped = desk.shipped_paths
+desk.shipped_paths = lambda: {name: path for name, path in shipped().items() if name in NAMES}
 
 found = []
 kernel_cache.compiling.append(found.append)

@@ -55,7 +55,7 @@ LATER = (*SLOW, *OF_FILMS)
 Method = Literal[*FAST, *LATER]
 # Far below every judged run; the embedded estimate of the judge is of lower order than the judge itself.
 TIGHT, JUDGE = 1e-11, 1e-11
-ASKED = (1e-3, 1e-6, 1e-9)
+ASKED = (1e-2, 1e-4, 1e-6, 1e-9)
 # Judges of films with unknowns of their own: tolerances over the accuracy, until two have ended.
 SHARP = (1e-3, 8e-3, 6.4e-2)
 # The first of them where every unknown has a rate, so that high orders pay.
