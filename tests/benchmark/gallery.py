@@ -84,9 +84,10 @@ def scenarios():
 
 
 def winner(row: dict) -> str:
-    """Method, how many times faster than the next, how many times faster than DOP853; "-" where none is known."""
-    if row["method"] is None:
-        return "-"
+    """Method, how many times faster than the next, how many times faster than DOP853; "-" where none is known; the
+    method alone where no other got there."""
+    if row["method"] is None or row["next"] is None:
+        return SHORT.get(row["method"], "-")
     return f"{SHORT[row['method']]}, {number(row['factor_next'])}, {number(row['factor_dop853'])}"
 
 
