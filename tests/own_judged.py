@@ -29,7 +29,7 @@ from sealdyn.studies import contact_onset
 # Processor time (s) of one run by own words.
 LONGEST = 90.0
 
-BLOCK, BLOCKS = 12, ("sundials_direct.BLOCK", "trbdf2.BLOCK_OF_STEPS", "integrate.MANY")
+BLOCK, BLOCKS = 12, ("sundials_direct.BLOCK", "own_methods.BLOCK_OF_STEPS", "integrate.MANY")
 
 
 def program(scene, turns, accuracy, folder, interrupted=0):
