@@ -29,7 +29,11 @@ from sealdyn.studies import contact_onset
 # Processor time (s) of one run by own words.
 LONGEST = 90.0
 
-BLOCK, BLOCKS = 12, ("sundials_direct.BLOCK", "own_methods.BLOCK_OF_STEPS", "integrate.MANY")
+BLOCK = 12
+BLOCKS = (
+    "sealdyn.solvers.sundials_direct.BLOCK", "sealdyn.solvers.own_methods.BLOCK_OF_STEPS",
+    "sealdyn.solvers.integrate.MANY",
+)  # fmt: skip
 
 
 def program(scene, turns, accuracy, folder, interrupted=0):
@@ -44,7 +48,7 @@ def program(scene, turns, accuracy, folder, interrupted=0):
         # Short runs are one block of steps, and end where one ends.
         with ExitStack() as stack:
             for name in BLOCKS:
-                stack.enter_context(mock.patch(f"sealdyn.solvers.{name}", BLOCK))
+                stack.enter_context(mock.patch(name, BLOCK))
             for time_out in range(interrupted):
                 stopped = simulate(given, out, stop=lambda: True, resume=time_out > 0)
                 assert (

@@ -33,7 +33,7 @@ def page() -> str:
 
 
 def number(value: float | None, digits: int = 2) -> str:
-    return "-" if value is None else f"{value:.{digits}g}"
+    return "-" if value is None else f"{float(f'{value:.{digits}g}'):g}"
 
 
 def fastest():

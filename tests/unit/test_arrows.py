@@ -1,6 +1,8 @@
 """The house: who may import whom, and which library is imported where."""
 
 import ast
+import pkgutil
+import re
 from pathlib import Path
 
 import pytest
@@ -142,3 +144,35 @@ def test_kernels_are_module_level():
                 for inner in ast.walk(outer):
                     if inner is not outer and isinstance(inner, ast.FunctionDef):
                         assert "njit" not in ast.dump(ast.Module(inner.decorator_list, [])), f"{path}: {inner.name}"
+
+
+TESTS = Path(__file__).parents[1]
+# What stands in a string, where no linter looks: imports of a program that a test runs, and what a patch replaces.
+IMPORTED = re.compile(r"^\s*from (sealdyn[\w.]*) import \(?([\w, ]+)", re.M)
+NAMED = re.compile(r"sealdyn(?:\.\w+)+")
+# Made by the tests or the build.
+MADE = {"sealdyn.scenarios", "sealdyn.films.fed_film.FILM"}
+
+
+def named_in_strings(path: Path):
+    """Dotted names of the package in the strings of a file, but those that a format completes."""
+    tree = ast.parse(path.read_text())
+    parts = {id(part) for node in ast.walk(tree) if isinstance(node, ast.JoinedStr) for part in node.values}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in parts:
+            yield from (
+                f"{module}.{name.split()[0]}" for module, names in IMPORTED.findall(node.value)
+                for name in names.strip(", ").split(",")
+            )  # fmt: skip
+            yield from [node.value] if NAMED.fullmatch(node.value) else []
+
+
+def test_what_strings_of_tests_name_is_there():
+    found = {name: path.name for path in sorted(TESTS.rglob("*.py")) for name in named_in_strings(path)}
+    gone = []
+    for name in found.keys() - MADE:
+        try:
+            pkgutil.resolve_name(name)
+        except (ImportError, AttributeError):
+            gone.append((found[name], name))
+    assert len(found) > 30 and gone == []
