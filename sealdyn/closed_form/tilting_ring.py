@@ -22,6 +22,11 @@ import numpy as np
 Real = float | np.ndarray
 
 
+def _size(amplitude: Any) -> Real:
+    # `abs` of a number or an array is an object to a type checker.
+    return abs(amplitude)
+
+
 def fmr_static(
     *,
     speed: Real,
@@ -191,10 +196,6 @@ def critical_forcing(contact_tilt: Real, own_response: Real, transmissibility: R
 # + i (v - w) D_r, Z_f = K_f + i (v - w/2) D_f, and the three stand in a row:
 #     g = (K_s s_i / Z_s - K_r r_i / Z_r) / (1 + Z_f / Z_s + Z_f / Z_r)
 # the stator's part at v = 0, the rotor's at v = w.
-
-
-def _size(amplitude: Any) -> Real:
-    return abs(amplitude)
 
 
 class TiltingRing(NamedTuple):

@@ -104,10 +104,7 @@ def closing_law(scene: Scene, opening_force) -> tuple[ClosingForce, str]:
         if balance is None or spring is None:
             raise SceneError("film.clearance", "nothing", "a length, or both balance_ratio and spring_force")
         return ClosingForce(area, balance, spring, outer >= inner), "closing force from balance ratio and spring"
-    force = opening_force(film.clearance, inner, outer)
-    if math.isnan(force):
-        found = f"{film.clearance:.4g} m, at which the film has no solution"
-        raise SceneError("film.clearance", found, "a clearance of the size of a film's, and a flow through it")
+    force = must_be_held(opening_force(film.clearance, inner, outer), film.clearance)
     if balance is None and spring is None:
         balance = (force / area - low) / (high - low) if high > low else 1.0
         spring = 0.0 if high > low else force - area * low
@@ -123,6 +120,14 @@ def closing_law(scene: Scene, opening_force) -> tuple[ClosingForce, str]:
         spring = force - ClosingForce(area, balance, 0.0, outer >= inner).at(inner, outer, 0.0)
         said = "spring force follows from clearance and balance ratio"
     return ClosingForce(area, balance, spring, outer >= inner), said
+
+
+def must_be_held(force: float, clearance: float) -> float:
+    """The opening force (N) at a clearance (m).  Raises SceneError where the film has no solution."""
+    if math.isnan(force):
+        found = f"{clearance:.4g} m, at which the film has no solution"
+        raise SceneError("film.clearance", found, "a clearance of the size of a film's, and a flow through it")
+    return force
 
 
 def extent(film, waves=(), contact=None) -> tuple[float, float]:

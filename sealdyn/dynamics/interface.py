@@ -336,9 +336,7 @@ def flow_at_rest(interface, s, observed=None) -> None:
     """Loads, flows and friction of film and asperities at a gap state at rest, into it; `observed` film and block in
     place of the interface's own.  Raises SceneError."""
     film, f = observed or interface.observed
-    film.flow(f, s, *([interface.steady(f, s)] if interface.unknowns is not None else []))
-    if interface.contact is not None:
-        contact.contact_load_and_friction(interface.contact, f, s)
+    _flow(film, f, s, [interface.steady(f, s)] if interface.unknowns is not None else [], interface.contact)
 
 
 def loads_at_rest(scene, film, clearance: float, error: float) -> np.ndarray:
@@ -347,10 +345,14 @@ def loads_at_rest(scene, film, clearance: float, error: float) -> np.ndarray:
     SceneError."""
     f = film.parameters(prepared(scene, film), clearance, error)
     rough, (s, _) = lay_surfaces(f, scene), rest_state(scene, clearance)
-    film.flow(f, s, *([_steady(film, f, s, film.unknowns(f))] if film.unknowns else []))
+    _flow(film, f, s, [_steady(film, f, s, film.unknowns(f))] if film.unknowns else [], rough)
+    return s
+
+
+def _flow(film, f, s, own, rough) -> None:
+    film.flow(f, s, *own)
     if rough is not None:
         contact.contact_load_and_friction(rough, f, s)
-    return s
 
 
 def _steady(film, f, s, unknowns) -> np.ndarray:

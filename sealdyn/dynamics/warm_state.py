@@ -44,7 +44,7 @@ from ..scene.fluid import in_numbers, liquid_of
 from ..scene.patterns import grooves_of, waves_of
 from ..scene.scene import Closing, SceneError
 from ..status import Status
-from .equilibrium import closing_law, crossing, equilibria
+from .equilibrium import closing_law, crossing, equilibria, must_be_held
 from .heated_rings import ThermalStates, heated_body
 from .imposed_motion import rest_state
 from .interface import Asked, Interface, lender, loads_at_rest, opening_law, prepared
@@ -178,18 +178,14 @@ class Warming:
             roots = equilibria(film, force, self.closing, *self.pressures, *surfaces)
         except SceneError:
             return None
-        stable = [root.clearance for root in roots if root.stable]
-        return stable[-1] if stable else None
+        return next((root.clearance for root in reversed(roots) if root.stable), None)
 
     def state(self, rise: float, clearance: float, coned_by: float | None = None) -> WarmState:
         """Heat made and carried at a rise (K) and a clearance (m), whether or not they balance; `coned_by` as in
         `at`."""
         scene = self.at(rise, clearance, coned_by)
         film, s = scene.film, loads_at_rest(scene, lender(scene, self.film), clearance, FINE)
-        opening = float(s[FORCE] + s[CONTACT_FORCE])
-        if math.isnan(opening):
-            found = f"{clearance:.4g} m, at which the film has no solution"
-            raise SceneError("film.clearance", found, "a clearance of the size of a film's, and a flow through it")
+        opening = must_be_held(float(s[FORCE] + s[CONTACT_FORCE]), clearance)
         leakage = s[FLOW_INNER] * math.copysign(1.0, self.pressures[0] - self.pressures[1])
         speed = self.scene.film.heat.friction * s[SPIN_DIFFERENCE]
         rubbed, sheared = (float(abs(s[k] * speed)) for k in (CONTACT_TORQUE, TORQUE))
