@@ -28,9 +28,10 @@ from ..faces.geometry import (
 )
 from ..films import film_named, film_of
 from ..numerics.piecewise_linear import initially
+from ..scene.excitation import Housing
 from ..scene.film import Coefficients, cells_of, coned
 from ..scene.patterns import grooves_of, waves_of
-from ..scene.scene import Closing, Initial, SceneError
+from ..scene.scene import Closing, Initial, SceneError, with_values
 from .condensation import NOISE, FilmDerivatives, LinearFilm, Slopes, film_slopes, linearise
 from .equilibrium import settle
 from .imposed_motion import asperity_steps, rest_state
@@ -38,6 +39,7 @@ from .intervals import constant_and_slope, spins
 
 # Relative error of the quadrature of a film that is linearised: what a run is asked for does not matter to a verdict.
 FINE = 1e-13
+UNMOVED = {"initial": Initial(), "housing": Housing(), "shaft.motion": None, "stator.load": None, "rotor.load": None}
 # How well a film with unknowns of its own knows its stiffness and damping, as a share, and a formula for them.
 CONDENSED, FORMULA = 1e-9, 1e-13
 # Pace (1/s) of the motion tried of films whose forces are linear in the rates: beside them the rounding of the static
@@ -322,8 +324,8 @@ def _settled(scene, film, opening_force):
     """`settle` of a scene, remembered where the clearance is searched for: several models of a scene are made."""
     if scene.film.clearance is not None:
         return settle(scene, opening_force)
-    # Where rings start from matters to the cells only.
-    alike = scene if film.prepared is not None else replace(scene, initial=Initial())
+    # What moves the rings matters to the cells only, and may hold records of any length.
+    alike = scene if film.prepared is not None else with_values(scene, UNMOVED)
     return _searched_clearance(Asked(alike, film))
 
 
@@ -340,9 +342,8 @@ def flow_at_rest(interface, s, observed=None) -> None:
 
 
 def loads_at_rest(scene, film, clearance: float, error: float) -> np.ndarray:
-    """The gap state at rest with loads, flows and friction of a `film` and asperities at a clearance (m), without
-    asking what closes the faces: what a search asks many times.  `error` of the film's integrals.  Raises
-    SceneError."""
+    """The gap state at rest with loads, flows and friction of a `film`, its integrals to an `error`, and asperities at
+    a clearance (m), whatever closes the faces: what a search asks many times.  Raises SceneError."""
     f = film.parameters(prepared(scene, film), clearance, error)
     rough, (s, _) = lay_surfaces(f, scene), rest_state(scene, clearance)
     _flow(film, f, s, [_steady(film, f, s, film.unknowns(f))] if film.unknowns else [], rough)
