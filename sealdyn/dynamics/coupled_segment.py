@@ -10,6 +10,7 @@ from ..faces import contact
 from ..faces.film_thickness import h_min
 from ..faces.geometry import FORCE
 from ..numerics.kernel import call_load, call_settle, inner_kernel, outer_kernel
+from ..scene.scene import SceneError
 from ..solvers.contract import SolverFailure
 from . import coupled_native, equations
 from .condensation import SETTLE, factored
@@ -381,6 +382,16 @@ class CoupledSegment(Segment):
         if self.model.contact is not None:
             contact.contact_load_and_friction(self.model.contact, self.model.f, self.s)
         equations.rates(tau, y, self.p, self.w, self.s, yp)
+
+    def quasi_static_rates(self, tau, y, yp):
+        """Rates of rings and works into `yp` (size,), of the film 0, with the steady film of the gap state there, which
+        goes into `y` (size,).  Raises SolverFailure where there is none."""
+        try:
+            self.settle_film(tau, y)
+        except SceneError as error:
+            raise SolverFailure(error.found) from None
+        yp[self.film] = 0.0
+        self.ring_rates(tau, y, yp)
 
     # --- stored steps -------------------------------------------------------------------------------
 

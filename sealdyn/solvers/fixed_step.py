@@ -190,6 +190,54 @@ def _segregated(segment, tau, y, method, tolerance, counts):
     yield from system.march(system.times(tau), y, advance)
 
 
+class _QuasiStatic:
+    """A segment's rings and works under the quasi-static film: the steady one at any place and speed of the rings,
+    squeeze included, which leaves it no unknowns.
+
+    **Valid** where a gas film fills far faster than the rings move (low squeeze number), or a film stores nothing:
+    elsewhere its errors end at what storage is worth, however small the tolerance.
+    """
+
+    film = slice(0, 0)
+
+    def __init__(self, segment, y):
+        if np.any(segment.lacks_inertia):
+            raise SolverFailure("quasi_static needs rates, and a massless ring has none")
+        self.segment, self.y = segment, y.copy()
+        self.own = np.delete(np.arange(segment.size), segment.film)
+        self.size, self.n_mechanical = len(self.own), segment.n_mechanical
+        self.length, self.longest_step, self.scales = segment.length, segment.longest_step, segment.scales[self.own]
+
+    def whole(self, tau, own):
+        """Rates and unknowns (size,) of the segment, those of the film the steady ones; its rates are left 0."""
+        y, yp = self.y, np.zeros(self.segment.size)
+        y[self.own] = own
+        self.segment.quasi_static_rates(tau, y, yp)
+        return yp, y.copy()
+
+    def rhs(self, tau, own, own_rates):
+        own_rates[:] = self.whole(tau, own)[0][self.own]
+
+    def jacobian(self, tau, own, _, matrix):
+        full, y = np.empty((self.segment.size,) * 2), self.y
+        y[self.own] = own
+        self.segment.jacobian(tau, y, None, full, rhs=self.segment.quasi_static_rates)
+        matrix[:] = full[np.ix_(self.own, self.own)]
+
+
+def _quasi_static(segment, tau, y, method, tolerance, counts):
+    """Rings on a quasi-static film, by SciPy's BDF."""
+    from scipy.integrate import BDF
+
+    rings, film = _QuasiStatic(segment, y), segment.film
+    for ts, owns, _ in scipy_steps(BDF, True, rings, tau, y[rings.own], method, tolerance, counts):
+        rates, end = rings.whole(ts[-1], owns[-1])
+        # Between steps the film is interpolated.
+        rates[film] = (end[film] - y[film]) / (ts[-1] - tau)
+        tau, y = ts[-1], end
+        yield ts, end[None, :], rates[None, :]
+
+
 class _System:
     """One segment for a fixed-step implicit method: steps, evaluations, modified Newton."""
 
@@ -301,4 +349,5 @@ CHOSEN = {
 }  # fmt: skip
 REFERENCE_METHODS = {**CHOSEN, "bdf2": _bdf_of_order_two, "rk45": _scipy, "lsoda": _scipy, "scipy_bdf": _scipy,
           "ida1": _low_order, "ida2": _low_order, "newmark": _newmark,
-          "generalised_alpha": _generalised_alpha, "midpoint": _midpoint, "segregated": _segregated}  # fmt: skip
+          "generalised_alpha": _generalised_alpha, "midpoint": _midpoint, "segregated": _segregated,
+          "quasi_static": _quasi_static}  # fmt: skip

@@ -20,7 +20,8 @@ TITLES = {"end": "error at the end", "over_time": "largest error", "steady": "st
 SHORT = {"adams": "Adams", "bdf": "BDF", "bdf2": "BDF 2", "ida": "IDA", "dop853": "DOP853", "rk45": "RK45",
          "lsoda": "LSODA", "radau": "Radau", "newmark": "Newmark", "generalised_alpha": "gen.-α",
          "midpoint": "midpoint", "expm": "expm", "trbdf2": "TR-BDF2", "scipy_bdf": "SciPy BDF", "ida2": "IDA, order 2",
-         "ida1": "implicit Euler (IDA)", "segregated": "segregated"}  # fmt: skip
+         "ida1": "implicit Euler (IDA)", "segregated": "segregated",
+         "quasi_static": "quasi-static"}  # fmt: skip
 # Every method: the house's own in full lines, SciPy's and others dashed, fixed steps dotted.
 LOOKS = {
     "adams": "first circle", "bdf": "third square", "bdf2": "third dashed diamond", "ida": "fourth triangle",
@@ -28,7 +29,7 @@ LOOKS = {
     "radau": "fifth circle", "newmark": "grey dashed plus", "generalised_alpha": "grey dotted square",
     "midpoint": "black dotted diamond", "trbdf2": "first dashed down",
     "scipy_bdf": "third dashed square", "ida2": "fourth dashed diamond", "ida1": "fourth dotted down",
-    "segregated": "grey dotted triangle",
+    "segregated": "grey dotted triangle", "quasi_static": "black dotted plus",
 }  # fmt: skip
 MARKS = ("circle", "square", "triangle", "down", "diamond")
 RUNGS = ("fifth", "second", "sixth", "first", "third", "fourth")

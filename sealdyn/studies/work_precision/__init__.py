@@ -33,7 +33,7 @@ NAMES = {
     "generalised_alpha": "generalised-alpha", "midpoint": "implicit midpoint", "expm": "matrix exponential",
     "gauss": "Gauss collocation of order 12", "radau_nodes": "Radau collocation of order 9",
     "trbdf2": "TR-BDF2", "scipy_bdf": "SciPy BDF", "ida1": "IDA order 1 (implicit Euler)", "ida2": "IDA order 2",
-    "segregated": "segregated film and rings",
+    "segregated": "segregated film and rings", "quasi_static": "quasi-static film",
 }  # fmt: skip
 INFO = Info(
     timed=("fmr_reference", 33),
@@ -48,8 +48,8 @@ INFO = Info(
 FAST = ("adams", "bdf", "ida", "dop853", "lsoda", "expm", "trbdf2")
 SLOW = ("rk45", "radau", "bdf2", "newmark", "generalised_alpha", "midpoint")
 # Of films with unknowns beside IDA: it at low orders, and SciPy on the rates where every unknown has one; film and
-# rings in turn.
-OF_FILMS = ("scipy_bdf", "ida2", "ida1", "segregated")
+# rings in turn; a film that stores nothing.
+OF_FILMS = ("scipy_bdf", "ida2", "ida1", "segregated", "quasi_static")
 ON_RATES = ("scipy_bdf", "radau", "dop853", "rk45")
 LATER = (*SLOW, *OF_FILMS)
 Method = Literal[*FAST, *LATER]
