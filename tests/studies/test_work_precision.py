@@ -164,8 +164,8 @@ def test_judges_agree_where_a_ring_sticks():
     face = math.pi * (model.scene.film.outer_radius**2 - model.scene.film.inner_radius**2)
     dropped = model.capture_speed * face / exact.scales["leakage"]
     assert max(band.values()) < dropped < 4e-6
-    # A judged method, whose steps are its own, agrees as well; a clearance between its long steps is interpolated, which
-    # costs 2e-8 to 1.3e-7.
+    # A judged method, whose steps are its own, agrees as well; a clearance between its long steps is interpolated,
+    # which costs 2e-8 to 1.3e-7.
     found = observation.observe(study.ready(asked), REFERENCE_METHODS["dop853"], "dop853", 1e-12, samples=200)
     of_all = observation.errors(found, exact)["over_time"]
     assert of_all["leakage"] < dropped and max(of_all.values()) < 4e-7
@@ -262,6 +262,8 @@ def test_a_film_that_stores_is_judged_by_a_library_on_its_rates(tmp_path):
         assert answer["methods"][name]["error"]["over_time"][-1] < worst, name
     of_euler = answer["methods"]["ida1"]["error"]["over_time"]
     assert 5.0 < of_euler[0] / of_euler[-1] < 500.0
+    # What a run may cost follows from the error that it is expected to reach.
+    assert 1 / 3 < answer["methods"]["ida1"]["expected"][-1] / of_euler[-1] < 3.0
 
 
 SMALL_GAS = ("film.gas_reynolds.cells=[6, 12]", "run.start=rest", "run.turns=0.25")

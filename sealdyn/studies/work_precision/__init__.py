@@ -282,12 +282,16 @@ def front(rows, where: str) -> list[tuple[float, float]]:
 
 
 def _allowed(point, rows, tolerance) -> tuple[float, float | None]:
-    """Seconds that a run may take, and the error it can be expected to reach: errors go as the tolerance does."""
-    known = [row for row in rows if row["status"] == Status.OK and row["errors"][point.get("where", "end")]]
+    """Seconds that a run may take, and the error it can be expected to reach: errors go as a power of the tolerance,
+    of the last two runs that ended, or as the tolerance."""
+    where = point.get("where", "end")
+    known = [row for row in rows if row["status"] == Status.OK and row["errors"][where]]
     if not known or not point.get("front"):
         return point["limit"], None
-    last = known[-1]
-    expected = max(last["errors"][point["where"]].values()) * tolerance / last["tolerance"]
+    found = [(row["tolerance"], max(max(row["errors"][where].values()), 1e-16)) for row in known[-2:]]
+    (first, before), (last, error) = found[0], found[-1]
+    order = math.log(before / error) / math.log(first / last) if first > last else 1.0
+    expected = error * (tolerance / last) ** min(max(order, 0.0), 1.0)
     least = time_at(point["front"], max(expected, 1e-16)) or max(spent for _, spent in point["front"])
     return min(point["limit"], point["slowest"] * least), expected
 
