@@ -245,7 +245,7 @@ def test_a_run_that_rubs_more_than_the_aligned_film_is_done_again_with_its_frict
 
     def stop():
         again = any(then < before for before, then in pairwise(times))
-        return again and 0.6 < times[-1] / max(times) < 0.9
+        return again and times[-1] < max(times)
 
     broken = sealdyn.simulate(seal, tmp_path / "broken.h5", progress=lambda t, end: times.append(t), stop=stop)
     assert broken.status == "interrupted"

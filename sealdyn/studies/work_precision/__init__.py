@@ -38,6 +38,7 @@ NAMES = {
 INFO = Info(
     timed=("fmr_reference", 33),
     wavy=True,
+    grooved=True,
     # Errors are shares of a scale.
     units={"processor": "s", "*": "1"},
     along={f"methods/{name}": ("tolerance",) for name in NAMES} | {

@@ -10,7 +10,8 @@ from ...dynamics import modes
 from ...films import film_named, film_names, film_of
 from ...scenario.reader import with_values
 from ...scene.film import Coefficients
-from ...scene.patterns import waves_of
+from ...scene.fluid import GasReynolds
+from ...scene.patterns import grooves_of, waves_of
 from ...simulation.selection import prepare_run
 from ...solvers.contract import tolerance_for
 from ...solvers.methods import METHODS
@@ -32,6 +33,8 @@ def rungs(scenario) -> list[tuple[str, dict]]:
         return [("linear film, coefficients as given", {"film.model": "linear"})]
     found = []
     scene = scenario.scene
+    if grooves_of(scene)[1]:
+        return _columns(scenario)
     for name in sorted(film_names(scene.film, waves_of(scene)), key=lambda n: film_named(n).fidelity):
         if film_named(name).halved is not None:
             found += _grids(scenario, name)
@@ -53,6 +56,15 @@ def _grids(scenario, name: str) -> list[tuple[str, dict]]:
     tables |= {TWICE: own.doubled(film, 1)} if own.doubled is not None else {}
     return [(f"{name.replace('_', ' ')} film, {words}", {"film.model": name, **_cells(name, table)})
             for words, table in tables.items()]  # fmt: skip
+
+
+def _columns(scenario) -> list[tuple[str, dict]]:
+    """The same of the film over grooves, which no other film sees."""
+    name = prepare_run(with_values(scenario, AUTO))[0].model.interface.film.name
+    columns = (getattr(scenario.scene.film, name) or GasReynolds()).columns
+    tables = {"half the cells": columns // 2, "its cells": columns, TWICE: 2 * columns}
+    return [(f"{name.replace('_', ' ')} film, {words}", {"film.model": name, f"film.{name}.columns": count})
+            for words, count in tables.items()]  # fmt: skip
 
 
 def _cells(name: str, film) -> dict:
