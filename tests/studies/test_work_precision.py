@@ -329,6 +329,19 @@ def test_a_quasi_static_film_that_stores_nothing_errs_by_the_tolerance():
     assert tight < 1e-3 < loose < 5e-2
 
 
+def test_a_face_with_grooves_is_judged_on_its_own_film(tmp_path):
+    """By its columns to a pitch: no other film sees grooves."""
+    few = ("run.turns=0.2", "run.start=rest", "film.gas_reynolds.columns=4")
+    flags = {"methods": ["ida", "segregated", "quasi_static"], "loosest": 1e-2, "tightest": 1e-4}
+    answer = studied(tmp_path, "turning_pads", *few, **flags)
+    assert all(set(row["status"]) == {"ok"} for row in answer["methods"].values())
+    of_ida = answer["methods"]["ida"]["error"]["over_time"]
+    assert of_ida[-1] < 1e-3 and of_ida[-1] < 0.3 * of_ida[0]
+    half, own = answer["models"]
+    assert half["label"].endswith("half the cells") and own["error"]["over_time"] < half["error"]["over_time"] < 0.1
+    assert text_trouble(drawn(chart, tmp_path / "w.h5", tmp_path / "w.png"))[1] == []
+
+
 def test_the_rates_of_a_film_that_stores():
     """Those with which its residual is zero, and their derivatives as differences have them."""
     segment = study.ready(scenario("gas_reynolds_reference", "film.gas_reynolds.cells=[4, 8]")).segment(0)

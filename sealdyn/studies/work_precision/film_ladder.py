@@ -7,7 +7,7 @@ from dataclasses import asdict
 import numpy as np
 
 from ...dynamics import modes
-from ...films import film_named, film_names, film_of
+from ...films import film_named, film_names
 from ...scenario.reader import with_values
 from ...scene.film import Coefficients
 from ...scene.fluid import GasReynolds
@@ -102,10 +102,10 @@ def _highest(scenario, ladder, samples, longest):
     for rung in reversed(ladder):
         try:
             run, *_ = prepare_run(with_values(scenario, {**rung[1], "run.accuracy": _accuracy(scenario), **AUTO}))
-            found = observe(run, collocation, "gauss", JUDGE, 2 * longest, samples)
-            if found.status not in (Status.OK, Status.COLLAPSED):
-                # A film with unknowns of its own is never exact.
-                own = film_of(scenario.scene, film_named(rung[1]["film.model"])).halved is not None
+            # A film with unknowns of its own is never exact.
+            own = run.model.unknowns.film_unknowns is not None
+            found = None if own else observe(run, collocation, "gauss", JUDGE, 2 * longest, samples)
+            if found is None or found.status not in (Status.OK, Status.COLLAPSED):
                 accuracy = scenario.run.accuracy / 30.0 if own else 1e-9
                 run, plan = prepare_run(with_values(scenario, {**rung[1], "run.accuracy": accuracy, **AUTO}))
                 method = plan.method
