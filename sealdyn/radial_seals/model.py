@@ -80,7 +80,7 @@ class RadialSegment:
     """What a solver integrates: `modes` (n,) of the followers (equations.FREE, HELD, RIDING) and `signs` (n,) of the
     sliding of the free ones; the rest as dynamics/segments.py."""
 
-    has_residual_form, algebraic, film, may_change = False, (), slice(0, 0), True
+    has_residual_form, algebraic, film, may_change, rows = False, (), slice(0, 0), True, ()
 
     def __init__(self, model: RadialModel, interval: Interval, index: int, last: bool, modes: dict):
         followers, n = model.followers, model.followers.count
@@ -97,7 +97,9 @@ class RadialSegment:
                 shaft.offset_direction, len(waves)]  # fmt: skip
         parts = (head, followers.angles, self.modes, self.signs, followers.row, np.ravel(waves))
         self.p = np.concatenate([np.asarray(part, float) for part in parts])
-        self.pace = max((abs(w) + 2.0 * abs(bend) * self.length for *_, w, bend in waves), default=0.0)
+        self.pace = self.imposed_pace = max(
+            (abs(w) + 2.0 * abs(bend) * self.length for *_, w, bend in waves), default=0.0
+        )
 
     def rhs(self, tau, y, yp):
         """Right-hand side `yp` at segment time `tau` (s)."""

@@ -213,7 +213,8 @@ def _refuse_seal(name: str, info: Info, scene):
         study = name.replace("_", "-")
         if _is_radial(scene):
             key, found = "lip" if scene.lip else "circumferential", "a radial seal"
-            raise SceneError(key, found, f"a face seal for {study}; of radial ones there are followability and sweep")
+            known = [one for one in studies.study_names() if study_info(one.replace("-", "_")).seals != "face"]
+            raise SceneError(key, found, f"a face seal for {study}; of radial ones there are {', '.join(known)}")
         raise SceneError("film", "a face seal", f"[lip] or [circumferential]: {study} is of radial seals")
     if _is_radial(scene):
         return

@@ -329,6 +329,22 @@ def test_a_quasi_static_film_that_stores_nothing_errs_by_the_tolerance():
     assert tight < 1e-3 < loose < 5e-2
 
 
+def test_followers_of_a_radial_seal_that_leave_the_shaft(tmp_path):
+    """Methods agree on their gaps; there is no residual form for IDA."""
+    seal = parse_scenario(
+        (SCENARIOS / "radial/circumferential_reference.toml").read_text(), "seal",
+        ["run.turns=0.6", "shaft.eccentricity=200 um"],
+    )  # fmt: skip
+    flags = {**FEW, "loosest": 1e-4, "methods": ["dop853", "radau", "ida"]}
+    answer = run_study("work-precision", seal, tmp_path / "w.h5", flags=flags)
+    assert set(answer["methods"]) == {"dop853", "radau"} and answer["models"] == []
+    assert answer["judge_error"]["over_time"] < 1e-8
+    for name in ("dop853", "radau"):
+        row = answer["methods"][name]
+        assert row["status"][-1] == "ok" and 0 < row["error"]["over_time"][-1] < 1e-6
+    assert text_trouble(drawn(chart, tmp_path / "w.h5", tmp_path / "w.png"))[1] == []
+
+
 def test_a_face_with_grooves_is_judged_on_its_own_film(tmp_path):
     """By its columns to a pitch: no other film sees grooves."""
     few = ("run.turns=0.2", "run.start=rest", "film.gas_reynolds.columns=4")

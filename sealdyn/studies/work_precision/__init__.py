@@ -16,6 +16,7 @@ from pydantic import Field
 
 from ...answers import Answer, Table, table_of
 from ...scenario.reader import with_values
+from ...scene.radial import RadialScene
 from ...scene.scene import SceneError
 from ...simulation.film_error import reynolds_comparison
 from ...simulation.result import libraries
@@ -37,6 +38,7 @@ NAMES = {
 }  # fmt: skip
 INFO = Info(
     timed=("fmr_reference", 33),
+    seals="any",
     wavy=True,
     grooved=True,
     # Errors are shares of a scale.
@@ -56,6 +58,8 @@ LATER = (*SLOW, *OF_FILMS)
 Method = Literal[*FAST, *LATER]
 # Far below every judged run; the embedded estimate of the judge is of lower order than the judge itself.
 TIGHT, JUDGE = 1e-11, 1e-11
+# The loosest accuracy that a run may be asked for.
+LOOSEST = 0.1
 ASKED = (1e-2, 1e-4, 1e-6, 1e-9)
 # Judges of films with unknowns of their own: tolerances over the accuracy, until two have ended.
 SHARP = (1e-3, 8e-3, 6.4e-2)
@@ -97,8 +101,8 @@ class Settings:
 
 def run(scenario, settings, tools) -> Answer:
     """Methods, their judge, models, and who is fastest at which accuracy."""
-    run = ready(scenario)
-    if scenario.run.start == "auto":
+    run, radial = ready(scenario), _is_radial(scenario)
+    if scenario.run.start == "auto" and not radial:
         # All methods and films begin alike.
         scenario = with_values(scenario, {"run.start": run.start.taken})
     chosen = [m for m in (*FAST, *LATER) if not settings.methods or m in settings.methods]
@@ -122,17 +126,17 @@ def run(scenario, settings, tools) -> Answer:
     methods = {name: row for name, row in methods.items() if "failed" not in row}
     mark_slow_runs(methods, settings.where, settings.slowest)
     rungs, unjudged = [], None
-    if settings.models:
+    if settings.models and not radial:
         rungs, unjudged = film_ladder.compare(scenario, settings.samples, settings.longest, settings.repeats, exact)
     answer = {
         "where": settings.where,
-        "scene": {"turns": _turns(run), "duration": run.duration, "method": choose_method(run)[0]},
+        "scene": {"turns": _turns(run), "duration": run.duration, "method": _own_method(scenario, run)},
         "judges": judges,
         "judge_error": band,
         "methods": methods,
         "models": rungs,
         "models_unjudged": unjudged,
-        "beside_reynolds": reynolds_comparison(run),
+        "beside_reynolds": None if radial else reynolds_comparison(run),
         "machine": {**machine(), "back_end": back_end(methods)},
         "names": {name: NAMES[name] for name in methods},
     }
@@ -140,8 +144,20 @@ def run(scenario, settings, tools) -> Answer:
     return Answer(answer, _found(answer), _tables(answer), notes=_notes(answer, settings))
 
 
+def _is_radial(scenario) -> bool:
+    return isinstance(scenario.scene, RadialScene)
+
+
+def _own_method(scenario, run) -> str:
+    """The method that a run takes by itself."""
+    return prepare_run(scenario)[1].method if _is_radial(scenario) else choose_method(run)[0]
+
+
 def _can(run, method: str) -> bool:
     """Whether a method is one for this run; a massless ring shows what becomes of the others."""
+    if isinstance(run.model.scene, RadialScene):
+        # Its equations have no residual form, and change with every contact.
+        return method not in ("ida", "expm", "trbdf2", *OF_FILMS)
     own = run.model.unknowns.film_unknowns is not None
     if method in OF_FILMS and not own:
         return False
@@ -155,9 +171,13 @@ def _can(run, method: str) -> bool:
     return True
 
 
-def ready(scenario):
+def ready(scenario, tolerance: float = TIGHT):
     """A fresh run whose film and gap are evaluated far more accurately than any judged run.  Coulomb friction
-    fades over a band that follows the accuracy, so there the scenario's own is kept."""
+    fades over a band that follows the accuracy, so there the scenario's own is kept.  The steps of a radial seal are no
+    longer than what is interpolated between them allows: its accuracy is the `tolerance`."""
+    if _is_radial(scenario):
+        accuracy = min(max(tolerance, TIGHT), LOOSEST)
+        return prepare_run(with_values(scenario, {"run.accuracy": accuracy, "run.solver": "auto"}))[0]
     seals = (scenario.scene.stator.secondary_seal, scenario.scene.rotor.secondary_seal)
     accuracy = scenario.run.accuracy if any(s and s.law == "coulomb" for s in seals) else TIGHT
     run, *_ = prepare_run(with_values(scenario, {"run.accuracy": accuracy, "run.solver": "auto"}))
@@ -179,12 +199,14 @@ def reference(scenario, samples: int, limit: float):
     Judges in order: collocation at Gauss or at Radau nodes, whichever suits the scene, then the matrix exponential or
     DOP853 at 1e-13 where they can, then the other nodes.  Of a film with unknowns of its own its method far sharper
     than asked, then SciPy's Radau where every unknown has a rate, or the same again."""
-    run = ready(scenario)
-    if run.model.unknowns.film_unknowns:
+    run, radial = ready(scenario), _is_radial(scenario)
+    if not radial and run.model.unknowns.film_unknowns:
         return _by_itself(scenario, choose_method(run)[0], samples, limit)
-    stiff = choose_method(run)[0] == "bdf"
+    stiff = _own_method(scenario, run) in ("bdf", "radau")
     own = ["radau_nodes", "gauss"] if stiff else ["gauss", "radau_nodes"]
-    if run.model.unknowns.linear and run.model.unknowns.constant and not run.model.unknowns.has_residual_form:
+    if radial:
+        others = [("dop853", REFERENCE_METHODS["dop853"], 1e-13)]
+    elif run.model.unknowns.linear and run.model.unknowns.constant and not run.model.unknowns.has_residual_form:
         others = [("expm", REFERENCE_METHODS["expm"], 1e-13)]
     elif stiff or run.model.unknowns.has_residual_form:
         others = []
@@ -198,7 +220,7 @@ def reference(scenario, samples: int, limit: float):
     ]
     good = []
     for name, steps, tolerance in trials:
-        found = observe(ready(scenario), steps, name, tolerance, limit, samples)
+        found = observe(ready(scenario, tolerance), steps, name, tolerance, limit, samples)
         if found.status in (Status.OK, Status.COLLAPSED) and name not in [n for n, _ in good]:
             good.append((name, found))
         if len(good) == 2:
@@ -264,7 +286,8 @@ def judge(scenario, exact, judges: dict, point: dict) -> dict:
 
 
 def _run(scenario, method, tolerance, point, limit):
-    return observe(ready(scenario), REFERENCE_METHODS[method], method, tolerance, limit, point["samples"])
+    run = ready(scenario, tolerance)
+    return observe(run, REFERENCE_METHODS[method], method, tolerance, limit, point["samples"])
 
 
 def _measured(scenario, method, tolerance, point, exact, limit) -> dict:

@@ -1,4 +1,5 @@
-"""What the user looks at of a run, and how wrong a method has it: h_min, relative misalignment, leakage, impulse."""
+"""What the user looks at of a run, and how wrong a method has it: h_min, relative misalignment, leakage, impulse; of a
+radial seal the gaps of its followers."""
 
 import math
 import time as clock
@@ -8,6 +9,7 @@ import numpy as np
 
 from ...dynamics.extrema import LEAST, MOST, H
 from ...dynamics.signals import signals
+from ...scene.radial import RadialScene
 from ...simulation.verification_run import JUMP_QUANTILE
 from ...solvers.contract import Counts, Recorder, SolverFailure, Status
 from ...solvers.integrate import solve
@@ -21,9 +23,9 @@ NOTHING = 1e-12
 @dataclass
 class Observed:
     """One run as it is looked at: status and reason, `processor` time (s) of the integration alone, own counts, sample
-    times (m,) with `series` (m,) by name, located `steady` extremes over the last forcing period or None, `impulse`
-    (N s) or None, and the scales that errors are relative to; whether its loads `jump`, as those of cells that tear
-    do."""
+    times (m,) with `series` (m,) or (m, n) by name, located `steady` extremes over the last forcing period or None,
+    `impulse` (N s) or None, and the scales that errors are relative to; whether its loads `jump`, as those of cells
+    that tear do."""
 
     status: str
     reason: str
@@ -46,6 +48,13 @@ class Sampler(Recorder):
         self.parts.append(
             (columns["time"], columns["h_min"], columns["relative_misalignment"], columns[side])
         )  # fmt: skip
+
+
+class RadialSampler(Recorder):
+    """Keeps the gaps between followers and shaft, at even times."""
+
+    def take(self, segment, taus, q, q_rate, x=None):
+        self.parts.append((segment.time + taus, segment.state(taus, q, q_rate)[0]))
 
 
 class _Stopwatch:
@@ -79,7 +88,8 @@ def observe(run, steps, method: str, tolerance: float, limit: float = math.inf, 
     `limit` (s) of processor time; `samples` intervals over the run.  The gap is watched and contacts, sticking and
     collapse are found as in any run, but the clock runs only inside the method.
     """
-    watch, sink = _Stopwatch(steps, limit), Sampler(run.duration / samples)
+    radial = isinstance(run.model.scene, RadialScene)
+    watch, sink = _Stopwatch(steps, limit), (RadialSampler if radial else Sampler)(run.duration / samples)
     with np.errstate(all="ignore"):
         outcome = solve(run, method, run.model.accuracy, sink, steps=watch, tolerance=tolerance)
     status, reason = str(outcome.status), "" if outcome.status == Status.OK else outcome.message
@@ -87,7 +97,8 @@ def observe(run, steps, method: str, tolerance: float, limit: float = math.inf, 
         status = "stopped"
     elif status == Status.OK and not np.all(np.isfinite(outcome.y)):
         status, reason = Status.FAILED, "overflowed"
-    return _observed(run, status, reason, watch.spent, outcome.counts, sink, outcome.y)
+    look = _observed_radial if radial else _observed
+    return look(run, status, reason, watch.spent, outcome.counts, sink, outcome.y)
 
 
 def _observed(run, status, reason, processor, counts, sink, y) -> Observed:
@@ -113,10 +124,17 @@ def _observed(run, status, reason, processor, counts, sink, y) -> Observed:
     return Observed(status, reason, processor, counts, columns[0], series, steady, impulse, scales, jump=jump)
 
 
+def _observed_radial(run, status, reason, processor, counts, sink, y) -> Observed:
+    times, gaps = (np.concatenate(part) for part in zip(*sink.parts, strict=True)) if sink.parts else (np.empty(0),) * 2
+    scales = {"gap": run.model.length}
+    return Observed(status, reason, processor, counts, times, {"gap": gaps}, None, None, scales)
+
+
 def errors(found: Observed, exact: Observed) -> dict:
     """Errors of a run against another: `{where: {observable: error}}`, relative to the clearance, the clearance over
-    the outer radius, the largest leakage and the whole impulse of `exact`; an empty dict where there is nothing to
-    compare.  **Source** maximum and final-time errors as in Hairer & Wanner's work-precision diagrams."""
+    the outer radius, the largest leakage and the whole impulse of `exact`, of a radial seal to the swing of its shaft;
+    an empty dict where there is nothing to compare.
+    **Source** maximum and final-time errors as in Hairer & Wanner's work-precision diagrams."""
     none = {where: {} for where in WHERE}
     if found.status != Status.OK or exact.status != Status.OK or len(found.times) != len(exact.times):
         return none
@@ -125,7 +143,7 @@ def errors(found: Observed, exact: Observed) -> dict:
         if name == "contact_impulse":
             out["end"][name] = out["over_time"][name] = abs(found.impulse - exact.impulse) / scale
             continue
-        away = np.abs(found.series[name] - exact.series[name]) / scale
+        away = np.abs(found.series[name] - exact.series[name]).reshape(len(found.times), -1).max(axis=1) / scale
         # Where loads jump, two runs never jump at one instant.
         largest = np.quantile(away, JUMP_QUANTILE) if exact.jump and name == "leakage" else away.max()
         out["end"][name], out["over_time"][name] = float(away[-1]), float(largest)
