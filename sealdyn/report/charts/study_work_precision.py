@@ -123,8 +123,8 @@ def caption(info) -> str:
         f"Scenario {info['name']}{overrides}, {answer['scene']['turns']:.3g} turns; sealdyn {info['version']}, solvers "
         f"{solvers_words(info)}. {m['processor']}, {m['cores']} cores; {libraries}.\n"
         f"Processor time: least of {settings['repeats']} runs after warm-up, inside the method only.  Error: largest "
-        "of h_min, relative misalignment, leakage, contact impulse, or of radial gaps; between steps by the program's "
-        "own interpolation.\n"
+        "of h_min, relative misalignment, leakage, contact impulse (radial: gap, load, torque), between steps by the "
+        "program's own interpolation.\n"
         f"{settings['tolerances']} tolerances, {settings['loosest']:.0e} to {settings['tightest']:.0e}; of fixed steps "
         "(step / fastest period)².  Crosses: did not end well, or too slow; at the left edge if the error is not known."
     )

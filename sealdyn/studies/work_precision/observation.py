@@ -1,5 +1,5 @@
 """What the user looks at of a run, and how wrong a method has it: h_min, relative misalignment, leakage, impulse; of a
-radial seal the gaps of its followers."""
+radial seal its largest gap, least load and friction torque."""
 
 import math
 import time as clock
@@ -15,6 +15,7 @@ from ...solvers.contract import Counts, Recorder, SolverFailure, Status
 from ...solvers.integrate import solve
 
 OBSERVABLES = ("h_min", "relative_misalignment", "leakage", "contact_impulse")
+OF_FOLLOWERS = ("largest_gap", "least_load", "friction_torque")
 WHERE = ("end", "over_time", "steady")
 # A leakage below this share of what the aligned film would pass is none.
 NOTHING = 1e-12
@@ -23,9 +24,9 @@ NOTHING = 1e-12
 @dataclass
 class Observed:
     """One run as it is looked at: status and reason, `processor` time (s) of the integration alone, own counts, sample
-    times (m,) with `series` (m,) or (m, n) by name, located `steady` extremes over the last forcing period or None,
-    `impulse` (N s) or None, and the scales that errors are relative to; whether its loads `jump`, as those of cells
-    that tear do."""
+    times (m,) with `series` (m,) by name, located `steady` extremes over the last forcing period or None,
+    `impulse` (N s) or None, and the scales that errors are relative to; which of the series `jump`, as the leakage of
+    cells that tear does, and the loads of followers."""
 
     status: str
     reason: str
@@ -36,7 +37,7 @@ class Observed:
     steady: dict | None
     impulse: float | None
     scales: dict = field(default_factory=dict)
-    jump: bool = False
+    jump: tuple[str, ...] = ()
 
 
 class Sampler(Recorder):
@@ -51,10 +52,14 @@ class Sampler(Recorder):
 
 
 class RadialSampler(Recorder):
-    """Keeps the gaps between followers and shaft, at even times."""
+    """The same of a radial seal."""
 
     def take(self, segment, taus, q, q_rate, x=None):
-        self.parts.append((segment.time + taus, segment.state(taus, q, q_rate)[0]))
+        # Its kernels are loaded for a radial seal only.
+        from ...radial_seals.observers import columns
+
+        found, _ = columns(segment, taus, q, q_rate)
+        self.parts.append([found[name] for name in ("time", *OF_FOLLOWERS)])
 
 
 class _Stopwatch:
@@ -102,7 +107,7 @@ def observe(run, steps, method: str, tolerance: float, limit: float = math.inf, 
 
 
 def _observed(run, status, reason, processor, counts, sink, y) -> Observed:
-    columns = [np.concatenate([part[i] for part in sink.parts]) if sink.parts else np.empty(0) for i in range(4)]
+    columns = _columns(sink)
     record, steady = run.extrema.records[1], None
     if status == Status.OK and math.isfinite(record[H]) and math.isfinite(record[MOST]):
         steady = {"h_min": [record[H]], "relative_misalignment": [record[LEAST], record[MOST]]}
@@ -120,20 +125,27 @@ def _observed(run, status, reason, processor, counts, sink, y) -> Observed:
         scales["leakage"] = float(np.max(np.abs(columns[3])))
     if impulse:
         scales["contact_impulse"] = abs(impulse)
-    jump = run.model.interface.film.settle is not None
+    jump = ("leakage",) if run.model.interface.film.settle is not None else ()
     return Observed(status, reason, processor, counts, columns[0], series, steady, impulse, scales, jump=jump)
 
 
 def _observed_radial(run, status, reason, processor, counts, sink, y) -> Observed:
-    times, gaps = (np.concatenate(part) for part in zip(*sink.parts, strict=True)) if sink.parts else (np.empty(0),) * 2
-    scales = {"gap": run.model.length}
-    return Observed(status, reason, processor, counts, times, {"gap": gaps}, None, None, scales)
+    times, *columns = _columns(sink)
+    series = dict(zip(OF_FOLLOWERS, columns, strict=True))
+    scales = {name: float(np.max(np.abs(values), initial=0.0)) or 1.0 for name, values in series.items()}
+    scales["largest_gap"] = run.model.length
+    return Observed(status, reason, processor, counts, times, series, None, None, scales, jump=OF_FOLLOWERS[1:])
+
+
+def _columns(sink):
+    """What was kept, (m,) each."""
+    return [np.concatenate([part[i] for part in sink.parts]) if sink.parts else np.empty(0) for i in range(4)]
 
 
 def errors(found: Observed, exact: Observed) -> dict:
     """Errors of a run against another: `{where: {observable: error}}`, relative to the clearance, the clearance over
-    the outer radius, the largest leakage and the whole impulse of `exact`, of a radial seal to the swing of its shaft;
-    an empty dict where there is nothing to compare.
+    the outer radius, the largest leakage and the whole impulse of `exact`, of a radial seal to the swing of its shaft,
+    the largest of its least loads and torques; an empty dict where there is nothing to compare.
     **Source** maximum and final-time errors as in Hairer & Wanner's work-precision diagrams."""
     none = {where: {} for where in WHERE}
     if found.status != Status.OK or exact.status != Status.OK or len(found.times) != len(exact.times):
@@ -143,9 +155,9 @@ def errors(found: Observed, exact: Observed) -> dict:
         if name == "contact_impulse":
             out["end"][name] = out["over_time"][name] = abs(found.impulse - exact.impulse) / scale
             continue
-        away = np.abs(found.series[name] - exact.series[name]).reshape(len(found.times), -1).max(axis=1) / scale
+        away = np.abs(found.series[name] - exact.series[name]) / scale
         # Where loads jump, two runs never jump at one instant.
-        largest = np.quantile(away, JUMP_QUANTILE) if exact.jump and name == "leakage" else away.max()
+        largest = np.quantile(away, JUMP_QUANTILE) if name in exact.jump else away.max()
         out["end"][name], out["over_time"][name] = float(away[-1]), float(largest)
         if found.steady and exact.steady and name in found.steady and name in exact.steady:
             pairs = zip(found.steady[name], exact.steady[name], strict=True)
