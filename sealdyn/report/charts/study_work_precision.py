@@ -83,7 +83,8 @@ def _errors(row, where) -> np.ndarray:
 def _error_axis(errors) -> Axis:
     """From above the largest of the errors, or 1e-3, down to below the least: precision grows to the right."""
     most = 10 ** math.ceil(math.log10(max(*errors, 1e-3)) + 0.15)
-    return Axis("1", "error, of the clearance (leakage, impulse: relative)", "log", most, max(min(errors) / 40, LEAST))
+    label = "error, of the clearance or the shaft's swing (others: relative)"
+    return Axis("1", label, "log", most, max(min(errors) / 40, LEAST))
 
 
 def models(answer) -> Panel:

@@ -15,6 +15,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from ...answers import Answer, Table, table_of
+from ...dynamics.intervals import largest_value
 from ...scenario.reader import with_values
 from ...scene.radial import RadialScene
 from ...scene.scene import SceneError
@@ -362,7 +363,8 @@ def _notes(answer: dict, settings) -> list[str]:
 
 
 def _turns(run) -> float:
-    return float(abs(run.model.reference_rate) * run.duration / (2 * math.pi))
+    rate = largest_value(run.model.scene.shaft.speed) or run.model.reference_rate
+    return float(abs(rate) * run.duration / (2 * math.pi))
 
 
 def back_end(methods) -> str:
