@@ -181,7 +181,7 @@ class _Scaled:
 
     def of(self, values) -> np.ndarray:
         """Numbers as drawn (NaN for None)."""
-        return self.factor * _numbers(values)
+        return self.factor * np.array(values, float)
 
     @property
     def label(self) -> str:
@@ -192,7 +192,6 @@ class _Scaled:
         if self.axis.scale == "log":
             logarithmic(ax, which)
         elif self.axis.scale == "asinh":
-            ax.set(**{f"{which}scale": "asinh"})
             getattr(ax, f"set_{which}scale")("asinh", linear_width=self.factor * (self.axis.width or 1.0))
 
     def finish(self, ax, which: str) -> None:
@@ -241,21 +240,19 @@ def _values(panel: Panel, which: str) -> list[float]:
             found += [one.y, one.z if one.kind == "shade" and one.z is not None else []]
     if which != "right":
         found.append([one.value for one in panel.levels if one.upright == (which == "x")])
-    known = [_numbers(values)[np.isfinite(_numbers(values))] for values in found]
+    known = [held[np.isfinite(held)] for held in (np.array(values, float) for values in found)]
     return [end for values in known if len(values) for end in (float(values.min()), float(values.max()))]
-
-
-def _numbers(values) -> np.ndarray:
-    """Numbers of a list (NaN for None), or of an array as it is."""
-    held = values if isinstance(values, np.ndarray) else [np.nan if v is None else v for v in values]
-    return np.array(held, float)
 
 
 def _style(words: str, k: int) -> dict:
     """Colour, dashes, mark and the rest of a series, from the words of its style."""
     given = words.split()
-    look = {"color": CYCLE[k % len(CYCLE)], "ls": "-", "marker": "", "lw": 1.5, "markersize": 5.0, "mfc": None,
-            "alpha": 1.0, "zorder": 2.0}  # fmt: skip
+    look = {
+        "color": CYCLE[k % len(CYCLE)], "ls": "-", "marker": "", "mfc": "white" if "open" in given else None,
+        "lw": 0.9 if "thin" in given else 2.4 if "thick" in given else 1.5,
+        "markersize": 3.5 if "small" in given else 9.0 if "large" in given else 5.0,
+        "alpha": 0.45 if "faint" in given else 1.0, "zorder": 5.0 if "front" in given else 2.0,
+    }  # fmt: skip
     for word in given:
         if word in COLOURS:
             look["color"] = COLOURS[word]
@@ -267,12 +264,6 @@ def _style(words: str, k: int) -> dict:
             look["color"] = colormaps[THICKNESS].reversed()(float(word))
         elif word not in ("open", "thin", "thick", "faint", "front", "small", "large", "wide"):
             raise ValueError(f"style: found {word!r}")
-    if "open" in given:
-        look["mfc"] = "white"
-    look["lw"] = 0.9 if "thin" in given else 2.4 if "thick" in given else look["lw"]
-    look["markersize"] = 3.5 if "small" in given else 9.0 if "large" in given else look["markersize"]
-    look["alpha"] = 0.45 if "faint" in given else 1.0
-    look["zorder"] = 5.0 if "front" in given else look["zorder"]
     return look
 
 
@@ -326,7 +317,7 @@ def _bars(ax, panel, one, x, y, style) -> None:
 def _map(ax, panel, one, x, y, style) -> None:
     """Colours over x and y: of words, on both sides of zero, or from low to high; hatched where there is no value."""
     colour = panel.colour or Axis()
-    cells = np.array([[np.nan if v is None else v for v in row] for row in one.z], float)
+    cells = np.array(one.z, float)
     # Ends of the colours, where they are not to fit what is drawn.
     finite = np.append(cells[np.isfinite(cells)], [end for end in (colour.low, colour.high) if end is not None])
     scaled = _Scaled(colour, finite.tolist())
@@ -383,7 +374,7 @@ def _colours_of(colour: Axis, values):
 
 
 def _contour(ax, panel, one, x, y, style) -> None:
-    cells = np.ma.masked_invalid([[np.nan if v is None else v for v in row] for row in one.z])
+    cells = np.ma.masked_invalid(np.array(one.z, float))
     if cells.count() and cells.min() < 0 < cells.max():
         ax.contour(x.of(one.x), y.of(one.y), cells, [0.0], colors=style["color"], linewidths=style["lw"])
         ax.plot([], [], color=style["color"], lw=style["lw"], label=printed(one.label))
@@ -402,10 +393,7 @@ DRAWN = {"line": _line, "marks": _marks, "shade": _shade, "bars": _bars, "map": 
 def _level(ax, one, scaled: _Scaled) -> None:
     """A line across the panel, or a band, with its meaning and number."""
     at, style = one.value * scaled.factor, _style(one.style, 0)
-    words = one.meaning
-    if one.number:
-        words = f"{words} {number(at, '.5g')} {scaled.unit}".strip()
-    words = printed(words)
+    words = printed(f"{one.meaning} {number(at, '.5g')} {scaled.unit}".strip() if one.number else one.meaning)
     span, line = (ax.axvspan, ax.axvline) if one.upright else (ax.axhspan, ax.axhline)
     named = {"label": words} if one.legend and words else {}
     if one.to is not None:

@@ -2,7 +2,6 @@
 number of archives, with nothing loaded from elsewhere.  Figures are enlarged and read off, tables sorted."""
 
 import importlib
-import os
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -37,6 +36,8 @@ def review(archives, out_path, title: str = "", rules=None, validation=None, pro
     archive."""
     from jinja2 import Environment, StrictUndefined
 
+    from .charts.page import replacing
+
     # A place that cannot be is found out before anything is drawn.
     out_path = Path(out_path)
     out_path.parent.mkdir(parents=True, exist_ok=True)
@@ -53,13 +54,8 @@ def review(archives, out_path, title: str = "", rules=None, validation=None, pro
     words = page.from_string(TEMPLATE.read_text(encoding="utf-8")).render(
         title=title or _title(parts, seals), parts=parts, seals=seals if len(seals) > 1 else []
     )
-    fresh = out_path.with_name(out_path.name + ".new")
-    try:
+    with replacing(out_path) as fresh:
         fresh.write_text(words, encoding="utf-8", errors="backslashreplace")
-        os.replace(fresh, out_path)
-    except BaseException:
-        fresh.unlink(missing_ok=True)
-        raise
     return out_path
 
 
@@ -114,26 +110,18 @@ def _run(path: Path, rules, validation) -> dict:
     if summary and summary.get("relative_misalignment", {}).get("max") == 0:
         # Aligned faces have none.
         figures.pop("orbit", None)
-    return {
-        "kind": "run",
-        "name": info["name"],
-        **_asked(info),
-        "status": str(info["status"]),
-        "message": told(info.get("message", "")),
-        "rows": [(name, words) for name, words in rows if name != "files"],
-        "warnings": [told(words) for words in answer.notes] if answer else [],
-        "figures": [(words, chart, _drawn(path, f"charts.{chart}")) for chart, words in figures.items()],
-        "rules": [{**rule, **{name: told(rule[name]) for name in ("said", "source")}} for rule in rules(path, info)]
-        if rules
-        else [],
-        "film": (film := (summary.get("model") or {}).get("film", "") if summary else ""),
-        "validation": validation(film) if validation and film else [],
-        "verdict": [],
-        "tables": [],
-        "scene": list(_scene(info["resolved"])),
-        "scenario": info["scenario"],
-        "made": _made(path, info),
-    }
+    film = (summary.get("model") or {}).get("film", "") if summary else ""
+    found = rules(path, info) if rules else []
+    return _part(
+        path, info, "run", info["status"],
+        message=told(info.get("message", "")),
+        rows=[(name, words) for name, words in rows if name != "files"],
+        warnings=[told(words) for words in answer.notes] if answer else [],
+        figures=[(words, chart, _drawn(path, f"charts.{chart}")) for chart, words in figures.items()],
+        rules=[{**rule, **{name: told(rule[name]) for name in ("said", "source")}} for rule in found],
+        film=film,
+        validation=validation(film) if validation and film else [],
+    )  # fmt: skip
 
 
 def _study(path: Path) -> dict:
@@ -141,25 +129,23 @@ def _study(path: Path) -> dict:
     answer = study["answer"]
     with reading_in(answer["written"]):
         columns = [table_columns(table, MOST_ROWS) for table in answer["tables"]]
-    return {
-        "kind": f"study {study['study']}",
-        "name": study["name"],
-        **_asked(study),
-        "status": str(answer["status"]),
+    return _part(
+        path, study, f"study {study['study']}", answer["status"],
         # The verdict, which stands below.
-        "message": "" if answer["verdict"] else told(answer.get("message", "")),
-        "rows": [],
-        "warnings": [],
-        "figures": [(f"Study {study['study']}", "study", _drawn(path, "panels"))],
-        "rules": [],
-        "film": "",
-        "validation": [],
-        "verdict": [told(words) for words in answer["verdict"]],
-        "tables": [[[told(cell) for cell in row] for row in zip(*table, strict=True)] for table in columns if table],
-        "scene": list(_scene(study["resolved"])),
-        "scenario": study["scenario"],
-        "made": _made(path, study),
-    }
+        message="" if answer["verdict"] else told(answer.get("message", "")),
+        figures=[(f"Study {study['study']}", "study", _drawn(path, "panels"))],
+        verdict=[told(words) for words in answer["verdict"]],
+        tables=[[[told(cell) for cell in row] for row in zip(*table, strict=True)] for table in columns if table],
+    )  # fmt: skip
+
+
+def _part(path: Path, info: dict, kind: str, status, **own) -> dict:
+    """What the page has of an archive: what every one holds, and its `own`; the rest is empty."""
+    empty = dict.fromkeys(("rows", "warnings", "rules", "validation", "verdict", "tables"), ())
+    return {
+        **empty, "film": "", "kind": kind, "name": info["name"], **_asked(info), "status": str(status),
+        "scene": list(_scene(info["resolved"])), "scenario": info["scenario"], "made": _made(path, info), **own,
+    }  # fmt: skip
 
 
 def told(words: str) -> str:

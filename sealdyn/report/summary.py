@@ -42,11 +42,6 @@ def tilt_resolved(summary: dict) -> float:
     return summary.get("accuracy", 0.0) * clearance / radius if clearance and radius else 0.0
 
 
-def if_resolved(name: str, value: float | None, near: float, digits: int = 4) -> str:
-    """A number (SI) of a quantity in words; one below what the accuracy resolves, `near` (SI), as that."""
-    return BELOW + in_words(name, near, 3) if is_below(value, near) else in_words(name, value, digits)
-
-
 def is_below(value: float | None, near: float) -> bool:
     """Whether a number that is not zero is one that the accuracy does not resolve."""
     return value is not None and 0.0 < abs(value) < near
@@ -166,7 +161,7 @@ def _film_lines(summary) -> Iterator[Line]:
 def _resolved(value, near: float, digits: int):
     """Value and quantity, or words in place of one that the accuracy does not resolve."""
     if is_below(value, near):
-        return if_resolved("misalignment", value, near), None
+        return BELOW + in_words("misalignment", near, 3), None
     return value, "misalignment", digits
 
 
@@ -203,10 +198,8 @@ def _margin(summary, contact) -> Line:
 
 def _friction(friction, area) -> Line:
     """Power and torque, and what the heat does on faces of an `area` (m^2)."""
-    parts, rise = (
-        [("", friction["power"], "power"), ("torque", friction["torque"], "torque")],
-        friction["temperature_rise"],
-    )
+    parts = [("", friction["power"], "power"), ("torque", friction["torque"], "torque")]
+    rise = friction["temperature_rise"]
     if rise is not None and rise <= CARRIED:
         return Line("friction", [*parts, ("would heat the leakage by", rise, "temperature")])
     if area and friction["power"] is not None:

@@ -1,13 +1,12 @@
 """Pictures of a run one after the other: drawn, and written as a GIF, an MP4 or a PNG."""
 
-import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
 from PIL import Image
 
-from .page import MARK, header, look, sheet
+from .page import MARK, header, look, replacing, sheet
 from .record import MILLISECONDS, Run
 
 # Pictures of a turn by default, and of a second; pictures at most; inches of a picture and dots of an inch.
@@ -44,14 +43,8 @@ def write(run: Run, panels, at: np.ndarray, path: Path, progress=None) -> Path:
     """Write the pictures at the progress `at` (m,), of a still the last; `panels` as of `stage`, `progress(done, end,
     words)`.  Returns the path."""
     pictures = _pictures(run, panels, at, is_still(path), progress)
-    fresh = path.with_name(f"{path.stem}.new{path.suffix}")
-    path.parent.mkdir(parents=True, exist_ok=True)
-    try:
+    with replacing(path) as fresh:
         (_write_mp4 if path.suffix == ".mp4" else _write)(pictures, fresh)
-        os.replace(fresh, path)
-    except BaseException:
-        fresh.unlink(missing_ok=True)
-        raise
     return path
 
 

@@ -191,12 +191,10 @@ def leakage_panel(ax, run: Run) -> None:
         return
     # The outer one wide beneath, so that both are seen where they agree; one unit, that of the larger.
     per, unit = min(run.shown(f"leakage_{side}")[::-1] for side in sides)
-    series = [
-        Series("line", *run.envelope(f"leakage_{side}"), label=f"{side} radius", style=style)
-        for side, style in zip(("outer", "inner"), ("yellow thick", "leakage thin"), strict=True)
-        if side in sides
-    ]
-    series = [Series(one.kind, one.x, per * one.y, label=one.label, style=one.style) for one in series]
+    series, styles = [], {"outer": "yellow thick", "inner": "leakage thin"}
+    for side in sides:
+        x, flow = run.envelope(f"leakage_{side}")
+        series.append(Series("line", x, per * flow, label=f"{side} radius", style=styles[side]))
     gas = _of_gas(run.summary) or (run.resolved.get("film") or {}).get("gas")
     ax.margins(y=0.25)
     _panel(ax, run, title, Axis(f"{unit}{NORMAL if gas else ''}", " "), series)

@@ -10,6 +10,7 @@ import io
 import json
 import os
 import re
+from contextlib import contextmanager
 from itertools import chain
 from pathlib import Path
 from textwrap import wrap
@@ -176,24 +177,31 @@ def save(figure, path) -> Path | Figure:
     if path is None:
         return figure
     path = Path(path)
+    with replacing(path) as fresh:
+        (_write_lines if path.suffix in LINES else _write_pixels)(figure, fresh)
+    return path
+
+
+@contextmanager
+def replacing(path: Path):
+    """Where a file is written that takes the place of `path` at once when the block ends."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    fresh = path.with_name(path.name + ".new")
+    fresh = path.with_name(f"{path.stem}.new{path.suffix}")
     try:
-        (_write_lines if path.suffix in LINES else _write_pixels)(figure, fresh, path.suffix)
+        yield fresh
         os.replace(fresh, path)
     except BaseException:
         fresh.unlink(missing_ok=True)
         raise
-    return path
 
 
-def _write_lines(figure, path: Path, suffix: str) -> None:
+def _write_lines(figure, path: Path) -> None:
     """A file that is drawn at any size; without a date, so that equal figures are equal files."""
     with rc_context({"svg.hashsalt": "sealdyn"}):
-        figure.savefig(path, format=suffix.removeprefix("."), metadata={LINES[suffix]: None})
+        figure.savefig(path, metadata={LINES[path.suffix]: None})
 
 
-def _write_pixels(figure, path: Path, _: str) -> None:
+def _write_pixels(figure, path: Path) -> None:
     figure.canvas.draw()
     # 256 colours are enough for lines and a stepped colour map, and a third of the bytes.
     pixels = Image.fromarray(np.asarray(figure.canvas.buffer_rgba())).convert("RGB")
@@ -211,8 +219,7 @@ def absent(ax, title: str, why: str = "not in this scene") -> None:
     # Not `set(xticks=[])`: that would empty every panel sharing the axis.
     ax.xaxis.set_visible(False)
     ax.yaxis.set_visible(False)
-    for spine in ax.spines.values():
-        spine.set_color(PALE)
+    ax.spines[:].set_color(PALE)
     ax.text(0.5, 0.5, "\n".join(wrap(why, 62)), transform=ax.transAxes, ha="center", va="center", color=GREY,
             style="italic")  # fmt: skip
 

@@ -49,23 +49,18 @@ class Run:
     def shown(self, name: str, first: int = 0, size: float | None = None) -> tuple[str, float]:
         """The unit that people read a series in from row `first` on, and how many of it make one SI unit: what the
         archive says, the everyday one by size, by default the largest.  Both components of a tilt have one unit."""
-        series = self.info["series"][name]
-        return self._shown(series) or by_size(
-            series.units, series.display_unit or series.units, series.display_factor,
-            self.largest(name, first) if size is None else size,
-        )  # fmt: skip
+        return self._shown(self.info["series"][name], self.largest(name, first) if size is None else size)
 
     def field_shown(self, name: str, size: float) -> tuple[str, float]:
         """The same of a field over the face or around the shaft of a `size` (SI)."""
-        field = self.info["fields"][name]
-        return self._shown(field) or by_size(field.units, field.display_unit or field.units, field.display_factor, size)
+        return self._shown(self.info["fields"][name], size)
 
-    def _shown(self, held) -> tuple[str, float] | None:
-        """The unit that the scenario has for what a series or field is, where its everyday one is not that."""
-        like = {"m": "clearance", "rad": "tilt", "Pa": "pressure"}.get(held.units)
-        unit = self.written.get(like)
+    def _shown(self, held, size: float) -> tuple[str, float]:
+        """The unit that the scenario has for what a series or field is, or one by its `size` (SI) where its everyday
+        one is not that."""
+        unit = self.written.get({"m": "clearance", "rad": "tilt", "Pa": "pressure"}.get(held.units))
         if unit is None or held.display_unit != everyday(held.units)[0]:
-            return None
+            return by_size(held.units, held.display_unit or held.units, held.display_factor, size)
         return printed(unit), factor_of(held.units, unit)
 
     def largest(self, name: str, first: int = 0) -> float:

@@ -59,8 +59,7 @@ def _front(ax, run: Run, ring: str, row: dict) -> None:
            xticks=[], yticks=[], title=f"Face of the {ring}, to scale")  # fmt: skip
     ax.set_xlabel("\n".join(filter(None, words)), fontsize=8)
     ax.grid(visible=False)
-    for side in ax.spines.values():
-        side.set_visible(False)
+    ax.spines[:].set_visible(False)
 
 
 def _is_deep(row: dict, r, theta) -> np.ndarray:

@@ -19,7 +19,7 @@ DECADES, STRONG = 3.5, 0.02
 # Of the largest: tilts and films over the rate that differ by less are the same at every rate.
 SAME = 0.01
 # SI unit of what is ramped -> the quantities it and its rate are read as.
-RATES = {"rad/s": ("speed", "speed_ramp"), "Pa": ("pressure", "pressure_ramp")}
+READ_AS = {"rad/s": ("speed", "speed_ramp"), "Pa": ("pressure", "pressure_ramp")}
 
 
 def draw(path, out):
@@ -209,9 +209,9 @@ def _load_ramps(answer):
     return panels + [_in_time(answer, *load, first=k == 0) for k, load in enumerate(loads.values())], ""
 
 
-def _rate_axis(answer) -> Axis:
-    _, rate = RATES.get(answer["unit"], ("", f"{answer['unit']}/s"))
-    return Axis(rate, "ramp rate (far right: a step)", scale="log")
+def _read_as(answer) -> tuple[str, str]:
+    """The quantities that what is ramped and its rate are read as, or their units."""
+    return READ_AS.get(answer["unit"], (answer["unit"], f"{answer['unit']}/s"))
 
 
 def _over_rate(answer, name, series, title, held, what) -> Panel:
@@ -234,13 +234,14 @@ def _over_rate(answer, name, series, title, held, what) -> Panel:
     low, high = values.min(), values.max()
     room = 0.25 * max(high - low, 0.4 * abs(values).max()) or None
     ends = {"low": max(low - room, -0.04 * high if low >= 0 else -np.inf), "high": high + room} if room else {}
-    return Panel(title, _rate_axis(answer), Axis(held, " ", **ends), marks, levels)
+    along = Axis(_read_as(answer)[1], "ramp rate (far right: a step)", scale="log")
+    return Panel(title, along, Axis(held, " ", **ends), marks, levels)
 
 
 def _in_time(answer, series, title, held, _, first: bool) -> Panel:
     """The way there, from where it begins; time logarithmic, since the rates differ by tens."""
     begun, lines, last = 0.03 * answer["decay"], [], 0.03 * answer["decay"]
-    load, rate = RATES.get(answer["unit"], (answer["unit"], f"{answer['unit']}/s"))
+    load, rate = _read_as(answer)
     for colour, row in _runs(answer):
         begin, _, back, _ = row["stages"]
         time, values = np.array(row["time"]) - begin, np.array(row[series])
