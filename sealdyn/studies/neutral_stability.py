@@ -16,6 +16,7 @@ from ..answers import Answer, Axis, Level, Panel, Series, Table, table_of
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
 from ..dynamics.warm_state import at_work
+from ..numerics.piecewise_linear import points
 from ..quantities import in_words, number
 from ..scene.film import Coefficients
 from ..scene.rings import ROTOR, STATOR
@@ -141,7 +142,7 @@ def free_ring(scene):
     if name is None:
         raise SceneError("rotor.transverse_inertia", "no floating ring with inertia", "one that can precess")
     refuse_uneven(scene)
-    speed = scene.shaft.speed if isinstance(scene.shaft.speed, float | int) else max(scene.shaft.speed.value, key=abs)
+    speed = max(points(scene.shaft.speed), key=abs)
     still = unforced(at_work(scene)[0], float(speed))
     ring, held = (still.rotor, still.stator) if name == "rotor" else (still.stator, still.rotor)
     support = replace(ring.support, axial_damping=0.0, tilt_damping=None if ring.support.radius is not None else 0.0)

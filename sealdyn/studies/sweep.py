@@ -136,17 +136,13 @@ def _tables(numbers, lost) -> list[Table]:
     columns += [(quantity_of(output), output) for output in outputs] + [("1", "status")]
     cells = [[*(row[a["key"]] for a in axes), *(row.get(o) for o in outputs), _end(row)] for row in rows]
     tables = [Table("points", columns, cells)]
-    followed = [output for output in outputs if _numbers(rows, output)]
+    followed = [output for output in outputs if any(_is_number(row.get(output)) for row in rows)]
     if not followed or len(rows) == 1:
         return tables
     at = (quantity_along(axes[0]), f"at {axes[0]['key']}")
     names = [("1", "output"), ("row", "least"), at, ("row", "largest"), at, ("1", "power of the key")]
     ranges = [_range(numbers, output, output in lost) for output in followed]
     return [*tables, Table("ranges", names, ranges, of_rows=[quantity_of(output) for output in followed])]
-
-
-def _numbers(rows, output) -> list[float]:
-    return [row[output] for row in rows if _is_number(row.get(output))]
 
 
 def _range(numbers, output: str, lost: bool) -> list:

@@ -6,12 +6,13 @@ One curve of balances for each order of waves answers for all rings (dynamics/el
 
 from dataclasses import asdict, dataclass, replace
 from functools import partial
+from itertools import cycle
 from typing import Annotated
 
 import numpy as np
 from pydantic import Field
 
-from ..answers import CYCLE, Answer, Axis, Level, Panel, Series, Table
+from ..answers import CYCLE, Answer, Axis, Level, Panel, Series, Table, table_of
 from ..dynamics.elastic_ring import PLACES, READ, design, joined, operating_point, order_of, stiffest, with_cells_of
 from ..dynamics.warm_state import at_work
 from ..quantities import in_words
@@ -174,18 +175,16 @@ def _tables(numbers) -> list[Table]:
         ("m", "best left", "net"), ("m", "best made", "initial"), ("share", "load support", "load_support"),
         ("1", "friction", "friction_coefficient"), ("leakage", "leakage", "leakage"), ("1", "limited by", "limited_by"),
     )  # fmt: skip
-    designs = [[one[key] for *_, key in names] for one in numbers["designs"]]
     own = (("1", "waves", "order"), ("m", "waves left", "net"), ("share", "load support", "load_support"),
            ("N*m^2", "stiffest ring", "stiffest"))  # fmt: skip
-    orders = [[one[key] for *_, key in own] for one in numbers["orders"]]
-    return [Table("designs", [name[:2] for name in names], designs), Table("orders", [n[:2] for n in own], orders)]
+    return [table_of("designs", names, numbers["designs"]), table_of("orders", own, numbers["orders"])]
 
 
 def _panels(numbers) -> list[Panel]:
     """Load support and net waviness over the bending stiffness, and what waves left carry and leak."""
     stiff, limit = Axis("N*m^2", "bending stiffness", scale="log"), numbers["leakage_limit"]
     support, left, carried, leaked = [], [], [], []
-    for curve, style in zip(numbers["curves"], _styles(numbers), strict=True):
+    for curve, style in zip(numbers["curves"], cycle(CYCLE), strict=False):
         own = [one for one in numbers["designs"] if one["order"] == curve["order"]]
         at, label = [one["stiffness"] for one in own], f"{curve['order']} waves"
         support.append(Series("line", at, [one["load_support"] for one in own], label=label, style=style))
@@ -203,8 +202,3 @@ def _panels(numbers) -> list[Panel]:
         Panel("Waves left", net, Axis("share", "load support"), carried),
         Panel("", net, Axis("leakage", "leakage", scale="log"), leaked, levels, below=True),
     ]
-
-
-def _styles(numbers) -> list[str]:
-    """A colour for each order."""
-    return [CYCLE[n % len(CYCLE)] for n in range(len(numbers["curves"]))]

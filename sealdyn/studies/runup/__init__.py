@@ -111,7 +111,7 @@ def speed_ramps(scenario, settings, tools) -> Answer:
         "disturbance": base["disturbance"], "tilt_scale": plan["tilt_scale"], "samples_per_turn": base["per_turn"],
         "linear": {"speed": speeds.tolist(), "amplitude": np.abs(linear).tolist(),
                    "phase": np.angle(linear).tolist(), "peak": plan["steady"].peak(begin, end, order)},
-        "whirl": _whirl(mode, plan, begin, end), "forced_tilt": plan["forced"],
+        "whirl": _whirl(mode, begin, end), "forced_tilt": plan["forced"],
         "warnings": plan["warnings"], "rate_foretold": plan["rate_foretold"],
     }  # fmt: skip
     size = "rad" if answer["tilting"] else "m"
@@ -127,8 +127,8 @@ def speed_ramps(scenario, settings, tools) -> Answer:
     return Answer(answer, _passing(answer), tables, notes=_speed_notes(answer))
 
 
-def _whirl(mode, plan, begin, end) -> dict | None:
-    """The whirl's frequency and growth rate over the speed; without a threshold of the least damped tilt mode."""
+def _whirl(mode, begin, end) -> dict | None:
+    """The whirl's frequency and growth rate over the speed; None without a threshold on the way."""
     if mode is None:
         return None
     speeds = np.linspace(mode.speeds[0], mode.speeds[-1], 61)

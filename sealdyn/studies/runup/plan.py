@@ -22,9 +22,9 @@ SPEED = "shaft.speed"
 ABOVE, DISTURBANCE = 1.05, 1e-3
 # Turns of a slow, a middle and a fast ramp where no threshold sets the pace; with one: growth on the way, as a share of
 # the growth to touch.
+TURNS, SHARES = (1000, 250, 60), (1.5, 0.75, 0.25)
 # A ring that sticks and slips costs a hundred times as much a turn.
 STICKING = (120, 60, 40)
-TURNS, SHARES = (1000, 250, 60), (1.5, 0.75, 0.25)
 # Accuracy of a run that meets a whirl, over the whirl's size; and the finest asked for.
 FINE, FINEST = 2e-3, 1e-11
 SETTLE, MOST_TURNS, PER_TURN = 5, 40_000, (32, 256)
@@ -59,7 +59,7 @@ def rate_unit(unit: str) -> str:
 
 def value_of(scenario, settings, name: str) -> float | None:
     """`begin` or `end` in SI.  Raises ScenarioError."""
-    given = settings.begin if name == "begin" else settings.end
+    given = getattr(settings, name)
     if given is None:
         return None
     try:
@@ -193,13 +193,10 @@ def _rate_foretold(mode, crossing, end, hold, limit, disturbance) -> float | Non
 
 
 def _own_rates(begin, end, foretold, few) -> list[float]:
-    if foretold:
-        rates = [foretold / share for share in SHARES]
-    else:
-        rates = [_turns(begin, end, 1.0) / turns for turns in few]
+    way = _turns(begin, end, 1.0)
+    rates = [foretold / share for share in SHARES] if foretold else [way / turns for turns in few]
     # At least a few windows of whole turns on the way, and no more turns than anyone waits for.
-    most, least = _turns(begin, end, 1.0) / 30, _turns(begin, end, 1.0) / 4000
-    return [float(f"{np.clip(rate, least, most):.4g}") for rate in rates]
+    return [float(f"{np.clip(rate, way / 4000, way / 30):.4g}") for rate in rates]
 
 
 def _tones(scene, tilting, order, begin, end) -> list[str]:
@@ -228,12 +225,13 @@ def _per_turn(scene, settings, begin) -> tuple[int, list[str]]:
     count = settings.samples_per_turn
     if count is None:
         count = int(np.clip(2 ** math.ceil(math.log2(4 * highest)), *PER_TURN))
-    enough = count > 2 * highest
+    if count > 2 * highest:
+        return count, []
     said = (
         f"aliasing: order {highest:.3g} is driven at the lowest speed, above the {count / 2:.0f} that {count} samples "
         "a turn show: it folds back; raise samples_per_turn or begin"
     )
-    return count, [] if enough else [said]
+    return count, [said]
 
 
 def _tilted(scenario, steady, crossing) -> dict:

@@ -39,7 +39,7 @@ from ...scenario.reader import with_values
 from ...scene import scene as scenes
 from ...simulation.margin import steady_extremes
 from ...simulation.selection import prepare_run
-from ...solvers.contract import Status
+from ...solvers.contract import Recorder, Status
 from ...solvers.integrate import solve
 from ..work_precision.observation import Sampler
 
@@ -99,21 +99,21 @@ class RampCycle:
         points = [p for k, p in enumerate(points) if k == 0 or p != points[k - 1]]
         return PiecewiseLinear(*(tuple(map(float, column)) for column in zip(*points, strict=True)))
 
-    def on(self, scenario, **overrides):
+    def on(self, scenario):
         """The scenario on this trip, begun from its linear steady state.  Raises ScenarioError."""
         start = {} if scenario.run.start.endswith(".h5") else {"run.start": "steady"}
         # Few samples: what is looked at is sampled by sinks of its own.
-        return with_values(
-            scenario, {self.key: self.table(), "run.duration": self.duration, "run.samples": 16} | start | overrides
-        )
+        changed = {self.key: self.table(), "run.duration": self.duration, "run.samples": 16}
+        return with_values(scenario, changed | start)
 
 
-class EvenAngleSink:
+class EvenAngleSink(Recorder):
     """A sink that keeps the relative tilt and the axial gap evenly over the shaft's angle: sample k at k/`per_turn` of
     a turn.  Of a shaft at rest nothing."""
 
     def __init__(self, per_turn: int):
-        self.per_turn, self.parts = per_turn, []
+        super().__init__()
+        self.per_turn = per_turn
 
     def due(self, segment):
         leg = segment.interval
@@ -142,15 +142,6 @@ class EvenAngleSink:
         tilt = gap[:, 1] + 1j * gap[:, 2]
         self.parts.append((number, segment.time + taus, speed + slope * taus, tilt, gap[:, 0]))
 
-    def state(self, segment, tau, y):
-        pass
-
-    def event(self, segment, tau, event):
-        pass
-
-    def log(self, events):
-        pass
-
     def arrays(self, before=()):
         """Number of each sample, times (s), shaft speeds (rad/s), relative tilt (rad, complex), axial gap change (m),
         each (m,); those of the sinks `before` come first."""
@@ -163,14 +154,13 @@ class EvenAngleSink:
 
 @dataclass
 class Passed:
-    """A trip as it was run: run, how it ended, time reached (s), samples evenly over the angle (see
-    EvenAngleSink.arrays), the free whirl as (times, relative tilt) or None, thinnest film (m) and its time (s), largest
-    relative misalignment (rad) and its time, whether the faces touched."""
+    """A trip as it was run: run, how it ended, samples evenly over the angle (see EvenAngleSink.arrays), the free whirl
+    as (times, relative tilt) or None, thinnest film (m) and its time (s), largest relative misalignment (rad) and its
+    time, whether the faces touched."""
 
     state: RunState
     status: str
     message: str
-    until: float
     samples: list
     free: tuple | None
     lowest: tuple[float, float]
@@ -184,8 +174,7 @@ def run_cycle(
     """Run a trip.  With a `mode` (ModeOverSpeed) a whirl of it of relative tilt `disturbance` (rad) is added at the
     trip's crossing, and unless `twin` is false the same run without it gives the free whirl."""
     run, plan = prepare_run(trip.on(scenario))
-    method = plan.method
-    accuracy = run.model.accuracy
+    method, accuracy = plan.method, run.model.accuracy
     if mode is None:
         sink = EvenAngleSink(per_turn)
         outcome = solve(run, method, accuracy, sink)
@@ -233,9 +222,8 @@ def told(run, outcome, samples, free, records) -> Passed:
             most.append((float(r[MOST]), own.end_time(int(r[MOST_LEG]), float(r[MOST_TAU]))))
     lowest, largest = min(low, default=(math.nan, 0.0)), max(most, default=(0.0, 0.0))
     level = max(run.model.face[TOUCH], run.model.face[COLLAPSE])
-    until = run.end_time(outcome.segment, outcome.tau)
     touched = outcome.status == Status.COLLAPSED or lowest[0] <= level
-    return Passed(run, str(outcome.status), outcome.message, until, samples, free, lowest, largest, touched)
+    return Passed(run, str(outcome.status), outcome.message, samples, free, lowest, largest, touched)
 
 
 # Values between both ends at which the quasi-static answer is found; samples of a stage of a trip.
@@ -331,12 +319,10 @@ def instants(trip: RampCycle) -> np.ndarray:
 
 def load_trip(scenario, point: dict) -> dict:
     """A ramp (or with `rate` None a step) there and back: extremes, what it settles at, and the series."""
-    names = ("key", "begin", "end", "rate", "settle", "hold", "rest")
-    trip = RampCycle(**{n: point[n] for n in names})
+    trip = RampCycle(**point)
     run, plan = prepare_run(trip.on(scenario))
-    method = plan.method
     sink = GivenTimesSink(instants(trip))
-    outcome = solve(run, method, run.model.accuracy, sink)
+    outcome = solve(run, plan.method, run.model.accuracy, sink)
     times, film, tilt, leakage = (np.concatenate([p[i] for p in sink.parts]) for i in range(4))
     passed = told(run, outcome, [np.zeros(1)] * 5, None, [(run, run.extrema.records[0])])
     table = trip.table()

@@ -49,9 +49,9 @@ class Steady:
         self.tilting = self.model.unknowns.with_tilt
         # At a speed of one the frequency of what turns with the shaft is its order.
         own = [h for h in self.model.segment().harmonics() if h.ring == 1 or h.frequency == 0.0]
-        self.orders = {round(h.frequency, 9): [] for h in own}
+        self.orders = {}
         for h in own:
-            self.orders[round(h.frequency, 9)].append(h)
+            self.orders.setdefault(round(h.frequency, 9), []).append(h)
 
     def main(self) -> float:
         """The order to follow: 1 where something turns with the shaft, else the first there is."""
@@ -97,9 +97,7 @@ def predicted_growth(mode, trip: RampCycle, times):
     """Logarithm of the growth since the crossing at `times` (m,) of a trip: integral of the growth rate over time, and
     the part that depends on speed alone."""
     times, w = np.asarray(times), trip.crossing
-    speed = np.interp(
-        times, [trip.settle, trip.top, trip.back, trip.home], [trip.begin, trip.end, trip.end, trip.begin]
-    )
+    speed = np.interp(times, *_speeds(trip))
     up = mode.between(w, np.where(times < trip.top, speed, trip.end)) / trip.rate
     held = mode.growth(trip.end) * (np.clip(times, trip.top, trip.back) - trip.top)
     down = np.where(times > trip.back, mode.between(speed, trip.end), 0.0) / trip.rate
@@ -137,6 +135,7 @@ def measured_growth(mode, trip: RampCycle, free, tilt_scale: float) -> dict:
 
 
 def _speeds(trip: RampCycle):
+    """Times (s) at which the rate changes, and the speeds (rad/s) then."""
     return [trip.settle, trip.top, trip.back, trip.home], [trip.begin, trip.end, trip.end, trip.begin]
 
 

@@ -201,9 +201,9 @@ def balance(scene, point: dict) -> dict:
 def release(scene, point: dict) -> dict:
     """What becomes of the released ring at one force ratio."""
     ring, q = free.ring_of(scene), point["force_ratio"]
-    floating = free.pair_of(scene).ring
-    heavier = replace(floating, **{name: point["inertia"] * getattr(floating, name) for name in INERTIAL})
-    scene = replace(scene, **{free.floating_name(scene): heavier})
+    pair = free.pair_of(scene)
+    heavier = replace(pair.ring, **{name: point["inertia"] * getattr(pair.ring, name) for name in INERTIAL})
+    scene = replace(scene, **{pair.name: heavier})
     guide = None if point["support"] == OWN else float(closed.closed_form_guide(q, ring.edges))
     scene = free.started(free.with_force_ratio(scene, q, guide), point["start"])
     # Landing on the asperities may defeat a method at one accuracy and not at the next.

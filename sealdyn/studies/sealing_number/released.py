@@ -22,7 +22,6 @@ from scipy.optimize import brentq
 from ...analysis import quasi_static
 from ...closed_form import ludwig_allen as closed
 from ...closed_form import sealed_wedge as sealed
-from ...closed_form.ludwig_allen import film, moment_ratio
 from ...dynamics.equilibrium import closing_law
 from ...dynamics.model import Model
 from ...dynamics.run_state import RunState
@@ -69,9 +68,13 @@ def film_on(scene, clearance: float | None = None) -> tuple[float, float, comple
     stretched by that tilt and by h0, and the ring tilts less than its seat until friction and support just hold the
     film; of several such films the one with the least h1/h0.  `clearance` (m): where the support's axial spring is at
     rest, if known (else found from the asperities).
-    **Raises** ValueError as `film`."""
+    **Raises** ValueError as `closed_form.ludwig_allen.film`."""
     ring, q, pair = ring_of(scene), force_ratio_of(scene), pair_of(scene)
-    stiffness, friction, seat = pair.stiffness / (ring.mean_radius * ring.spring_force), moment_ratio(q), pair.tilt
+    stiffness, friction, seat = (
+        pair.stiffness / (ring.mean_radius * ring.spring_force),
+        closed.moment_ratio(q),
+        pair.tilt,
+    )
     axial = pair.ring.support.axial_stiffness / ring.spring_force
     rest = Model(scene, 1e-3).clearance if clearance is None and axial else clearance or 0.0
 
@@ -109,7 +112,7 @@ def film_on(scene, clearance: float | None = None) -> tuple[float, float, comple
             tilted = tilt * there.conjugate() / abs(there)
             return mean, e * mean, tilted if pair.floating == ROTOR else tilted.conjugate()
         low = high
-    film(q, stiffness * seat, ring.group, ring.edges)
+    closed.film(q, stiffness * seat, ring.group, ring.edges)
     raise ValueError("hang-up: the film would tilt by more than the seat")
 
 
@@ -129,6 +132,11 @@ class Pair(NamedTuple):
     speed: float
     stiffness: float
 
+    @property
+    def name(self) -> str:
+        """Name of the ring that floats."""
+        return RING_NAMES[self.floating]
+
 
 def pair_of(scene) -> Pair:
     """Ring and seat of a scene: the rotor over a stator that stands askew, or the stator over a rotor that runs out."""
@@ -142,16 +150,11 @@ def pair_of(scene) -> Pair:
     return Pair(STATOR, stator, "rotor.runout", initially(rotor.runout), rotor.runout_phase, speed, stiffness)
 
 
-def floating_name(scene) -> str:
-    """Name of the ring that floats."""
-    return RING_NAMES[pair_of(scene).floating]
-
-
 def ring_of(scene) -> quasi_static.Ring:
     """The numbers of Ludwig & Allen of a scene.  **Raises** SceneError if it is not of their kind."""
     refuse_uneven(scene)
     f, pair, none = scene.film, pair_of(scene), "nothing"
-    name, seal = RING_NAMES[pair.floating], pair.ring.secondary_seal
+    name, seal = pair.name, pair.ring.secondary_seal
     other = RING_NAMES[1 - pair.floating]
     turning, gives = initially(scene.stator.speed), seal is not None and seal.stiffness is not None
     own = initially(pair.ring.misalignment)
@@ -225,12 +228,12 @@ def with_force_ratio(scene, force_ratio: float, guide: float | None = None) -> S
         # What its inertia takes, the support gives.
         stiffness = guide * ring.mean_radius * ring.spring_force / tilt + support.tilt()[0] - pair.stiffness
         support = Support(axial_stiffness=0.0, tilt_stiffness=stiffness)
-    return replace(scene, **{RING_NAMES[pair.floating]: replace(pair.ring, secondary_seal=seal, support=support)})
+    return replace(scene, **{pair.name: replace(pair.ring, secondary_seal=seal, support=support)})
 
 
 def _film_or_start(force_ratio, guide, ring):
     try:
-        return film(force_ratio, guide, ring.group, ring.edges)
+        return closed.film(force_ratio, guide, ring.group, ring.edges)
     except ValueError:
         return start_film(force_ratio, ring)
 
@@ -258,7 +261,7 @@ def started(scene, start="closed form", factor: float = 1.0) -> Scene:
     x, y = tilt * math.cos(pair.direction), tilt * math.sin(pair.direction)
     z = mean - clearance if pair.floating == STATOR else clearance - mean
     at = RingStart(z=z, tilt_x=x, tilt_y=y, tilt_x_rate=-pair.speed * y, tilt_y_rate=pair.speed * x)
-    return replace(scene, initial=Initial(**{RING_NAMES[pair.floating]: at}))
+    return replace(scene, initial=Initial(**{pair.name: at}))
 
 
 # --- in time ----------------------------------------------------------------------------------------------
@@ -298,7 +301,7 @@ def released(scene, turns: float = 80, last: float = 4, accuracy: float = 1e-3, 
     ring = ring_of(scene)
     turn = 2 * math.pi / ring.shaft_speed
     run = RunState(Model(scene, accuracy), turns * turn)
-    unknowns, name = run.model.unknowns, RING_NAMES[pair_of(scene).floating]
+    unknowns, name = run.model.unknowns, pair_of(scene).name
     start = getattr(scene.initial, name)
     for part in ("z", "tilt_x", "tilt_y"):
         at = unknowns.names.index(f"{name}_{part}")
@@ -337,7 +340,7 @@ def _told(run, ring, series, outcome, last) -> Released:
         share=float(np.mean(h1[end]) / np.mean(h0[end])), direction=float(np.angle(np.mean(g[end]))),
         whirl=float(angle[-1] - angle[0]) / (2 * math.pi * last),
         contact_share=float(np.mean(series["contact_force"][end]) / ring.spring_force),
-        stuck_share=float(np.mean(series[f"{RING_NAMES[pair.floating]}_seal_stuck"][end])), time=time, h0=h0, h1=h1,
+        stuck_share=float(np.mean(series[f"{pair.name}_seal_stuck"][end])), time=time, h0=h0, h1=h1,
         evaluations=outcome.counts.rhs, energy_residual=outcome.energy_residual,
     )  # fmt: skip
     if outcome.status == Status.OK:

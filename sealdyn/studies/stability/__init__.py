@@ -218,8 +218,7 @@ def _column_over_grooves(scenario, point: dict) -> dict:
 
 def rates_of(scenario, point: dict) -> dict:
     """Growth rates (1/s) of one point of the map: `total` of all modes, `tilt` of the tilt modes."""
-    keys = _scenario_keys(scenario.scene, point["values"])
-    found = Model(frozen_at_start(with_values(scenario, {**keys, "run.start": "steady"}).scene)).linear_scene().modes()
+    found = Model(_scene_at(scenario, point["values"])).linear_scene().modes()
     return {"total": modes.growth(found), "tilt": modes.growth([mode for mode in found if mode.kind == "tilt"])}
 
 
@@ -300,9 +299,7 @@ def _beside_threshold(tilt, count) -> list[tuple[int, int]]:
 def confirmed(scenario, point: dict) -> dict:
     """Growth rate of the least damped tilt mode in the time domain at one point of the map, nothing imposed; it
     `agrees` with that of the eigenvalues if the sign is the same and the difference within what either may err."""
-    scene = frozen_at_start(
-        with_values(scenario, {**_scenario_keys(scenario.scene, point["values"]), "run.start": "steady"}).scene
-    )
+    scene = _scene_at(scenario, point["values"])
     scene = replace(
         scene,
         shaft=Shaft(scene.shaft.speed),
@@ -322,6 +319,12 @@ def confirmed(scenario, point: dict) -> dict:
     measured, doubt = found["rate"], found["uncertainty"]
     agrees = measured * rate > 0 and abs(measured - rate) <= 3 * doubt + SHARE * abs(rate)
     return {"time_domain": measured, "uncertainty": doubt, "turns": turns, "agrees": bool(agrees)}
+
+
+def _scene_at(scenario, values: dict):
+    """The scene with values of both axes."""
+    keys = _scenario_keys(scenario.scene, values)
+    return frozen_at_start(with_values(scenario, {**keys, "run.start": "steady"}).scene)
 
 
 def _scenario_keys(scene, values: dict) -> dict:
@@ -404,11 +407,12 @@ def _panel(numbers) -> Panel:
     here = [a["here"] for a in (x, y)]
     if all(at is not None and min(a["values"]) <= at <= max(a["values"]) for at, a in zip(here, (x, y), strict=True)):
         series.append(Series("marks", here[:1], here[1:], label="this scenario", style="fifth star large front"))
-    for words, style, points in (
-        ("grows in the time domain", "black open triangle front", [p for p in numbers["confirmed"] if _grows(p, 1)]),
-        ("decays in the time domain", "black open down front", [p for p in numbers["confirmed"] if _grows(p, -1)]),
-        ("not confirmed", "bad cross front", [p for p in numbers["confirmed"] if "failed" in p]),
+    for words, style, kind in (
+        ("grows in the time domain", "black open triangle front", True),
+        ("decays in the time domain", "black open down front", False),
+        ("not confirmed", "bad cross front", None),
     ):
+        points = [p for p in numbers["confirmed"] if (None if "failed" in p else p["time_domain"] > 0) is kind]
         if points:
             at = [[p[name] for p in points] for name in ("x", "y")]
             series.append(Series("marks", *at, label=words, style=style))
@@ -418,10 +422,6 @@ def _panel(numbers) -> Panel:
             levels.append(Level(limit, "stable at every speed up to 1/nu =", upright, "bad dashed", number=True))
     colour = Axis("growth_rate", "growth rate of the least damped tilt mode", "asinh")
     return Panel("Growth rate over the map", _axis(x), _axis(y), series, levels, colour=colour, tall=1.2)
-
-
-def _grows(point: dict, sign: int) -> bool:
-    return "failed" not in point and (point["time_domain"] > 0) == (sign > 0)
 
 
 def _axis(a: dict) -> Axis:
@@ -437,12 +437,7 @@ def _reason(scenario, axes, possible) -> str:
     j, i = np.argwhere(~possible)[0]
     values = {axes[0]["key"]: axes[0]["values"][i], axes[1]["key"]: axes[1]["values"][j]}
     try:
-        Model(
-            frozen_at_start(
-                with_values(scenario, {**_scenario_keys(scenario.scene, values), "run.start": "steady"}).scene
-            ),
-            1.0,
-        )
+        Model(_scene_at(scenario, values), 1.0)
     except (ScenarioError, SceneError) as error:
         return f", for instance: {error}"
     return "."

@@ -20,7 +20,7 @@ from ...scenario.errors import ScenarioError
 from ...scenario.reader import with_values
 from ...scene.film import coning_varies
 from ...scene.forces import HALF_HEIGHT
-from ...scene.scene import SceneError, frozen_at_start, refuse_uneven
+from ...scene.scene import SceneError, frozen_at_start, part, refuse_uneven
 
 INERTIA_RATIO = "inertia_ratio"
 BLOCK = 100_000
@@ -172,12 +172,7 @@ class _Given:
         self.scene, self.grid = scene, grid
 
     def __call__(self, key: str):
-        if key in self.grid:
-            return self.grid[key]
-        value = self.scene
-        for step in key.split("."):
-            value = getattr(value, step)
-        return value
+        return self.grid[key] if key in self.grid else part(self.scene, key)
 
     def polar(self, ring: str):
         if INERTIA_RATIO in self.grid:

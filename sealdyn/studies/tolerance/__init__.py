@@ -222,7 +222,7 @@ def column(rows, name) -> np.ndarray:
     """An output of the rows, not a number where a run was not possible, its solver failed or it has none.  A run that
     collapsed counts with what it had until then."""
     values = [None if row.get("status", Status.FAILED) == Status.FAILED else row.get(name) for row in rows]
-    return np.array([np.nan if value is None else value for value in values], dtype=float)
+    return np.array(values, dtype=float)
 
 
 def touched(rows, margin: float) -> np.ndarray:

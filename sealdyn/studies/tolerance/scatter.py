@@ -266,11 +266,10 @@ def moments(values, scrambles) -> dict:
     (n,), and `standard_deviation`."""
     known = np.isfinite(values)
     x = values[known]
-    if len(x) < 2:
-        return {"count": len(x), "mean": number(np.mean(x)) if len(x) else None, "mean_error": None,
-                "standard_deviation": None}  # fmt: skip
-    return {"count": len(x), "mean": number(np.mean(x)), "mean_error": error_of_mean(x, scrambles[known]),
-            "standard_deviation": number(np.std(x, ddof=1))}  # fmt: skip
+    scattered = len(x) > 1
+    return {"count": len(x), "mean": number(np.mean(x)) if len(x) else None,
+            "mean_error": error_of_mean(x, scrambles[known]) if scattered else None,
+            "standard_deviation": number(np.std(x, ddof=1)) if scattered else None}  # fmt: skip
 
 
 def error_of_mean(values, scrambles) -> float | None:

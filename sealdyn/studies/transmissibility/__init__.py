@@ -106,7 +106,7 @@ def run(scenario, settings, tools) -> Answer:
     """Transmissibilities of the three arrangements by three independent methods, the speeds at which they cross, which
     is best where, the table and Green's groups."""
     own_speed, grooved = abs(frozen_at_start(scenario.scene).shaft.speed), bool(grooves_of(scenario.scene)[1])
-    seals = _seals(scenario.scene, grooved)
+    seals = (seals_over_grooves if grooved else seals_of)(scenario.scene)
     top, held = settings.speed_to, None
     if top is None:
         asked = 3 * own_speed or 3000.0
@@ -136,9 +136,9 @@ def run(scenario, settings, tools) -> Answer:
     numbers["roads_apart"], numbers["phases_apart"] = _apart(numbers)
     tools.say(0.05)
     numbers["crossings"] = crossings(seals, speeds)
-    numbers["crossovers"] = {
-        q: next((c["speed"] for c in reversed(numbers["crossings"]) if of(c, q, SEALS[:2])), None) for q in QUANTITIES
-    }
+    # The last one of each.
+    between = {c["quantity"]: c["speed"] for c in numbers["crossings"] if c["seals"] == list(SEALS[:2])}
+    numbers["crossovers"] = dict.fromkeys(QUANTITIES) | between
     numbers["stability_ends"] = {name: stability_ends(seals[name], speeds, numbers[name]["stable"]) for name in SEALS}
     numbers["best"] = {q: best(seals, q, speeds, numbers["crossings"], numbers["stability_ends"]) for q in QUANTITIES}
     numbers["pairs"] = [
@@ -154,10 +154,6 @@ def run(scenario, settings, tools) -> Answer:
         tables, far = _tables(seals, numbers)
         notes = _notes(seals, numbers) + far
         return Answer(numbers, _found(numbers), tables, _panels(numbers), notes)
-
-
-def _seals(scene, grooved: bool) -> dict[str, Arrangement]:
-    return dict(seals_over_grooves(scene)) if grooved else seals_of(scene)
 
 
 # --- which is best ------------------------------------------------------------------------------------
@@ -185,11 +181,6 @@ def crossings(seals: dict[str, Arrangement], speeds) -> list[dict]:
                     better = pair[1] if high > 0 else pair[0]
                     found.append({"quantity": quantity, "seals": list(pair), "speed": speed, "better_above": better})
     return found
-
-
-def of(crossing: dict, quantity: str, pair) -> bool:
-    """Whether a crossing is that of a quantity and a pair of arrangements."""
-    return crossing["quantity"] == quantity and crossing["seals"] == list(pair)
 
 
 def best(seals: dict[str, Arrangement], quantity: str, speeds, crossings: list[dict], ends: dict) -> list[dict]:

@@ -48,11 +48,11 @@ class ShortRunAverages:
     """
 
     def __init__(self, scene, radius, accuracy=1e-6, within=1e-3, turns=1, patience=40):
-        film = scene.film if scene.film.profile else replace(scene.film, profile=_level(scene.film))
-        begun = replace(scene, film=replace(film, model="auto"), initial=Initial())
+        profile = profile_of(scene.film)
+        begun = replace(scene, film=replace(scene.film, profile=profile, model="auto"), initial=Initial())
         self.scene = frozen_at_end(begun)
         self.radius = np.asarray(radius, dtype=float)
-        self.own = np.interp(self.radius, film.profile.radius, film.profile.depth)
+        self.own = np.interp(self.radius, profile.radius, profile.depth)
         self.within, self.turns, self.patience = within, turns, patience
         rough = scene.contact.roughness
         probe = RunState(Model(self.scene, accuracy), 1.0)
@@ -107,14 +107,11 @@ class ShortRunAverages:
     def run(self, depth, travel: float) -> RunState:
         """The scene over worn faces, its ring `travel` (m) from where it began: the profile is counted from there, so
         that the ring is near zero again, and the closing force is what the springs still give."""
-        profile = self._profile(depth, travel)
+        profile = Profile(tuple(self.radius.tolist()), tuple((self.own + depth + travel).tolist()))
         film = replace(self.scene.film, clearance=self.clearance, profile=profile)
         closing = Closing(self.closing.balance_ratio, self.closing.spring + self.stiffness * travel)
         model = Model(replace(self.scene, film=film, closing=closing), self.accuracy)
         return RunState(model, self.turns * self.period)
-
-    def _profile(self, depth, travel) -> Profile:
-        return Profile(tuple(self.radius.tolist()), tuple((self.own + depth + travel).tolist()))
 
     # --- a scene in which nothing moves ---------------------------------------------------------------
 
@@ -152,12 +149,13 @@ class ShortRunAverages:
         """Runs of whole periods, each from the last one's end, until the averages stay."""
         y = np.zeros(run.model.unknowns.size)
         y[: len(motion["y"])] = motion["y"]
-        method, past = None, []
+        method, past, turns = None, [], self.period * abs(self.scene.shaft.speed) / (2 * math.pi)
+        interval = self.period / (PER_TURN * max(1, round(turns)))
         for _ in range(self.patience):
             run = RunState(run.model, run.duration)
             run.y0 = y
             method = method or choose_method(run)[0]
-            sink = Recorder(self.period / self._samples())
+            sink = Recorder(interval)
             outcome = solve(run, method, self.accuracy, sink)
             if outcome.status != Status.OK:
                 raise NoAverage(outcome.status, outcome.message)
@@ -166,9 +164,8 @@ class ShortRunAverages:
             past.append(self._rates(run, states))
             y = np.zeros(run.model.unknowns.size)
             y[: run.model.unknowns.n_mechanical] = outcome.y[: run.model.unknowns.n_mechanical]
-            if _stays(past, self.within):
+            if settled := _stays(past, self.within):
                 break
-        settled = _stays(past, self.within)
         seen = self._seen(run, t, q, rate)
         rates, scatter = past[-1], None
         if not settled:
@@ -178,11 +175,6 @@ class ShortRunAverages:
         y = self._moved(run, y, seen["axial_gap_change"])
         more = {"rates": rates, "scatter": scatter, "settled": settled, "periods": len(past) * self.turns, "y": y}
         return seen, states[:: max(1, len(states) // FEW)], more
-
-    def _samples(self) -> int:
-        """Samples of a period."""
-        turns = self.period * abs(self.scene.shaft.speed) / (2 * math.pi)
-        return PER_TURN * max(1, round(turns))
 
     def _moved(self, run, y, shift) -> list[float]:
         """Mechanical unknowns with the mean shift of the gap taken out of the rings' axial displacements."""
@@ -239,9 +231,9 @@ class ShortRunAverages:
         return seen
 
 
-def _level(film) -> Profile:
-    """Faces without a profile, as one."""
-    return Profile((film.inner_radius, film.outer_radius), (0.0, 0.0))
+def profile_of(film) -> Profile:
+    """The profile of the faces, a level one where they have none."""
+    return film.profile or Profile((film.inner_radius, film.outer_radius), (0.0, 0.0))
 
 
 def supports_of(scene) -> tuple[float, dict[str, float]]:

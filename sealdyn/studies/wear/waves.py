@@ -43,7 +43,7 @@ from ...scene.forces import HALF_HEIGHT
 from ...scene.patterns import HIGHEST_ORDER, MOST_WAVES
 from ...scene.scene import Closing, SceneError, frozen_at_start
 from ...status import Status
-from .averages import supports_of
+from .averages import profile_of, supports_of
 from .rosenbrock import Average, HatBasis, NoAverage
 
 # Gauss points over the touching part of a piece of radius: exact for the law's seventh degree, the arm and two hats.
@@ -88,7 +88,7 @@ class BalancesOfWaves:
         scene = frozen_at_start(scene)
         # Cells of the waves as they were made.
         film = prepared(scene, film_of(scene))
-        own = film.profile or Profile((film.inner_radius, film.outer_radius), (0.0, 0.0))
+        own = profile_of(film)
         self.scene, self.radius = replace(scene, film=film), np.asarray(radius, dtype=float)
         self.own = np.interp(self.radius, own.radius, own.depth)
         self.wave, self.travelling = scene.stator.waviness[0], travelling
@@ -285,7 +285,7 @@ def _numbers(balances, wears, rows, settings) -> dict:
     amplitudes = np.array([row["seen"]["amplitudes"] for row in rows]).reshape(-1, balances.harmonics)
     phases = np.outer(np.arange(1, balances.harmonics + 1), balances.wave.order * angle + balances.wave.phase)
     history = {name: [row["seen"][name] for row in rows] for name in SEEN}
-    history |= {"time": [row["time"] for row in rows]}
+    history["time"] = [row["time"] for row in rows]
     for face in wears:
         history[f"{face}_volume"] = [basis.volume(np.array(one)) for one in np.pad(
             np.array(profile[face]).reshape(-1, basis.n), ((0, 0), (0, basis.cosines)))]  # fmt: skip
