@@ -80,11 +80,9 @@ def comparison(one, other) -> dict:
 def comparison_lines(found: dict, told=lambda key, value: _word(value)) -> list[str]:
     """The same for people; `told(key, value)` the words of a number (SI) at a dotted key of a scene."""
     out = [f"A  {found['names'][0]}: {found['status'][0]}", f"B  {found['names'][1]}: {found['status'][1]}"]
-    out += [
-        f"  scene         {row['key']}: "
-        + " -> ".join(told(row["key"], value) if _is_number(value) else _word(value) for value in row["values"])
-        for row in found["scene"]
-    ]
+    for row in found["scene"]:
+        words = (told(row["key"], value) if _is_number(value) else _word(value) for value in row["values"])
+        out.append(f"  scene         {row['key']}: {' -> '.join(words)}")
     out += [] if found["scene"] else ["  scene         the same"]
     rows = {row["key"]: row for row in found["summary"]}
     printed = [(heading, quantity, rows[key]) for key, quantity, heading in FIRST if key in rows]
@@ -190,7 +188,7 @@ def _word(value) -> str:
 def _series(one, other, infos) -> Iterator[dict]:
     """The largest differences of SERIES at common instants."""
     times = [column(path, "time") for path in (one, other)]
-    _, rows, others = np.intersect1d(*times, assume_unique=False, return_indices=True)
+    _, rows, others = np.intersect1d(*times, return_indices=True)
     if len(rows) < 2:
         return
     for name in SERIES:

@@ -7,7 +7,7 @@ from matplotlib.ticker import MaxNLocator
 
 from ...archive import FIELD_TIME, field
 from .page import CONTACT, EVEN, FILM, PRESSURE, SKY, THICKNESS, absent, annulus, header, look, save, sheet
-from .record import BLOCK, DEG, MM, Run
+from .record import DEG, MM, Run
 
 MOST_COLUMNS, STEPS = 1500, 20
 # Inches: the sheet, and what the pressure adds to it.
@@ -155,7 +155,7 @@ def map_over_turns(ax, run: Run, turns: float):
 
 def face_at_minimum(ax, run: Run):
     """The face at the sample with the smallest h_min of the whole run."""
-    at = _thinnest_row(run)
+    at = int(np.nanargmin(run.values("h_min")))
     inner, outer = run.film("inner_radius"), run.film("outer_radius")
     if not (inner and outer):
         absent(ax, "Thinnest moment")
@@ -223,12 +223,3 @@ def _edge(run: Run, first: int) -> float:
     if run.has("h_min_radius"):
         return float(np.median(run.values("h_min_radius", first)))
     return run.film("inner_radius") or 0.0
-
-
-def _thinnest_row(run: Run) -> int:
-    best, at = np.inf, 0
-    for start in range(0, run.rows, BLOCK):
-        values = run.values("h_min", start, start + BLOCK)
-        if values.min() < best:
-            best, at = values.min(), start + int(values.argmin())
-    return at

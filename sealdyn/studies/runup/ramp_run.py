@@ -8,7 +8,7 @@ film, and up to the square of the tilt over the clearance with another.
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -262,9 +262,8 @@ def _settled(segment) -> tuple[float | None, float | None, float | None]:
     if not model.loads_are_balanced(interval):
         return None, None, None
     shift, linear = model.axial_shift(interval), model.linear_scene(interval)
-    harmonics = [replace(h) for h in segment.harmonics()]
-    period = _period(harmonics)
-    most, _, closing = steady_extremes(linear, linear.answers(harmonics), period)
+    harmonics = segment.harmonics()
+    most, _, closing = steady_extremes(linear, linear.answers(harmonics), _period(harmonics))
     source, f = model.observed
     s = np.zeros(GAP_STATE_SIZE)
     s[DZ] = shift
@@ -275,7 +274,8 @@ def _settled(segment) -> tuple[float | None, float | None, float | None]:
     return float(most), float(min(edge_gaps(model.face, shift - closing, most, s[CONING_CHANGE]))), float(leakage)
 
 
-def _period(harmonics):
+def _period(harmonics) -> float | None:
+    """Period (s) of harmonics that turn at one frequency."""
     turning = {abs(h.frequency) for h in harmonics if h.frequency}
     return 2 * math.pi / turning.pop() if len(turning) == 1 else None
 

@@ -3,6 +3,7 @@ the actual film, the same in time, and the ring let go, over F_s/F_d; under seal
 
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import groupby
 from typing import Annotated, Literal
 
 import numpy as np
@@ -246,11 +247,7 @@ def _found(numbers) -> str:
     """What becomes of the released ring on its own support over the force ratio."""
     own, seal = _rows(numbers, OWN), numbers["seal"]
     low, high = closed.film_range(numbers["guide"], sealed.Edges(**seal["edges"]))
-    fates: list[tuple[str, list]] = []
-    for row in own:
-        if not fates or fates[-1][0] != row["status"]:
-            fates.append((row["status"], []))
-        fates[-1][1].append(row["force_ratio"])
+    fates = [(fate, [row["force_ratio"] for row in rows]) for fate, rows in groupby(own, key=lambda row: row["status"])]
     words = ["{} at {}".format(fate, " to ".join(dict.fromkeys((f"{q[0]:g}", f"{q[-1]:g}")))) for fate, q in fates]
     said = ", ".join(words) or "no run ended"
     foreseen = f"a film from {low:.4g} to {high:.4g}" if low < high else "no film"
@@ -366,8 +363,7 @@ def _fates_panel(numbers, over) -> Panel:
     """Fates over force ratio and what the support carries: foreseen, and run."""
     found, need, last = numbers["map"], numbers["map"]["closed_form"], over.high / 1.1
     series = [Series("line", found["hang_up_below"], found["guide"], style="fourth thick"),
-              Series("line", found["straightens_above"], found["guide"],
-                     style="bad thick"),
+              Series("line", found["straightens_above"], found["guide"], style="bad thick"),
               Series("line", need["force_ratio"], need["guide"], label="closed form", style="black")]  # fmt: skip
     for fate, style in FATES.items():
         mine = [row for support in (OWN, NEEDED) for row in _rows(numbers, support) if row["status"] == fate]

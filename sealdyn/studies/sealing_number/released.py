@@ -275,8 +275,8 @@ class Released:
     its secondary seal, faces apart), "moving" (not settled), or the solver's "collapsed", "failed"; `message` a
     sentence.  Over the last turns: mean, least and largest of `mean_film` h0, `amplitude` h1 and `least_film` h0 - h1
     (m), `share` h1/h0, direction of the relative tilt from the seat's (rad) and how often it went around per turn,
-    shares of the spring force on contact and of time stuck; then `time` (s), `h0`, `h1` (m) of the run, evaluations
-    and `energy_residual`."""
+    shares of the spring force on contact and of time stuck; then `h0` (m) of the whole run, its evaluations and
+    `energy_residual`."""
 
     status: str
     message: str
@@ -288,9 +288,7 @@ class Released:
     whirl: float
     contact_share: float
     stuck_share: float
-    time: np.ndarray
     h0: np.ndarray
-    h1: np.ndarray
     evaluations: int
     energy_residual: float
 
@@ -310,19 +308,15 @@ def released(scene, turns: float = 80, last: float = 4, accuracy: float = 1e-3, 
     run.check_start()
     sink = Kept(turn / SAMPLES)
     outcome = solve(run, method or choose_method(run)[0], accuracy, sink)
-    series = {name: np.concatenate([part[name] for part in sink.series]) for name in sink.series[0]}
+    series = {name: np.concatenate([part[name] for part in sink.parts]) for name in sink.parts[0]}
     return _told(run, ring, series, outcome, last)
 
 
 class Kept(Recorder):
     """Signals of a run, taken while it runs: whether the ring sticks is known only then."""
 
-    def __init__(self, interval):
-        super().__init__(interval)
-        self.series = []
-
     def take(self, segment, taus, q, q_rate, x=None):
-        self.series.append(signals(segment, taus, q, q_rate, x))
+        self.parts.append(signals(segment, taus, q, q_rate, x))
 
 
 def _told(run, ring, series, outcome, last) -> Released:
@@ -340,7 +334,7 @@ def _told(run, ring, series, outcome, last) -> Released:
         share=float(np.mean(h1[end]) / np.mean(h0[end])), direction=float(np.angle(np.mean(g[end]))),
         whirl=float(angle[-1] - angle[0]) / (2 * math.pi * last),
         contact_share=float(np.mean(series["contact_force"][end]) / ring.spring_force),
-        stuck_share=float(np.mean(series[f"{pair.name}_seal_stuck"][end])), time=time, h0=h0, h1=h1,
+        stuck_share=float(np.mean(series[f"{pair.name}_seal_stuck"][end])), h0=h0,
         evaluations=outcome.counts.rhs, energy_residual=outcome.energy_residual,
     )  # fmt: skip
     if outcome.status == Status.OK:

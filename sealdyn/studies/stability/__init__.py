@@ -90,7 +90,7 @@ def run(scenario, settings, tools) -> Answer:
         "units": {f"confirmed/{name}": a["unit"] for name, a in zip("xy", axes, strict=True)},
     }
     found = _found(numbers["margins"], scenario.name)
-    return Answer(numbers, found, _tables(numbers, total), [_panel(numbers)], _notes(numbers, scenario, axes, total))
+    return Answer(numbers, found, _tables(numbers, total), [_panel(numbers)], _notes(scenario, axes, total))
 
 
 def si_axis(scenario, words: str, name: str) -> dict:
@@ -370,7 +370,7 @@ def _tables(numbers, total) -> list[Table]:
     return [Table("margins", names, [own]), table_of("confirmed in time", columns, numbers["confirmed"])]
 
 
-def _notes(numbers, scenario, axes, total) -> list[str]:
+def _notes(scenario, axes, total) -> list[str]:
     """What the map keeps, and which of its points cannot be."""
     notes, possible = [], np.isfinite(total)
     if moves_with_speed(scenario.scene) and scenario.scene.film.clearance is not None:
@@ -386,18 +386,18 @@ def _panel(numbers) -> Panel:
     """The map of growth rates, the threshold, the scenario itself, and points confirmed in time."""
     x, y = numbers["axes"].values()
     tilt, every = numbers["tilt_growth_rate"], numbers["growth_rate"]
-    rates = np.array(tilt, float)
+    rates, total = np.array(tilt, float), np.array(every, float)
     if not np.isfinite(rates).any():
         return Panel("Growth rate", note="no possible scene on this map")
     series = [
         Series("map", x["values"], y["values"], tilt),
         Series("contour", x["values"], y["values"], every, label="threshold (eigenvalues)", style="black thick"),
     ]
-    axial = (np.array(every, float) > 0) & (rates <= 0)
+    axial = (total > 0) & (rates <= 0)
     if axial.any():
         j, i = (int(np.median(at)) for at in np.nonzero(axial))
         series.append(Series("words", [x["values"][i]], [y["values"][j]], names=["axially unstable"], style="black"))
-    for word, region in (("stable", np.array(every, float) < 0), ("unstable", np.array(every, float) > 0)):
+    for word, region in (("stable", total < 0), ("unstable", total > 0)):
         if np.mean(region) >= 0.03:
             # Steps from each cell to the edge of its region; the map's edge counts.
             depth = distance_transform_cdt(np.pad(region, 1), "taxicab")[1:-1, 1:-1]

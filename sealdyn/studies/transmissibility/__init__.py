@@ -12,6 +12,7 @@ expects that it is better than both, closed_form/tilting_ring.py.
 """
 
 from dataclasses import dataclass
+from functools import cache
 from itertools import combinations, pairwise
 from typing import Literal
 
@@ -164,20 +165,17 @@ def crossings(seals: dict[str, Arrangement], speeds) -> list[dict]:
     FMR and FMS transmit the same."""
     found = []
     moving = [w for w in speeds if w != 0]
-    algebra = {name: [seal.algebra(w) for w in moving] for name, seal in seals.items()}
+    algebra = {name: cache(seal.algebra) for name, seal in seals.items()}
     for i, quantity in enumerate(QUANTITIES):
         for pair in combinations(SEALS, 2):
 
-            def excess(one, other, i=i):
-                return one[i] - other[i] if abs(one[i] - other[i]) > SAME * one[i] else 0.0
+            def excess(w, i=i, pair=pair):
+                one, other = (algebra[name](w)[i] for name in pair)
+                return one - other if abs(one - other) > SAME * one else 0.0
 
-            def excess_at(w, pair=pair, excess=excess):
-                return excess(*(seals[name].algebra(w) for name in pair))
-
-            values = [excess(*both) for both in zip(*(algebra[name] for name in pair), strict=True)]
-            for (a, b), (low, high) in zip(pairwise(moving), pairwise(values), strict=True):
+            for (a, low), (b, high) in pairwise((w, excess(w)) for w in moving):
                 if low * high < 0:
-                    speed = float(brentq(excess_at, a, b, rtol=1e-12))
+                    speed = float(brentq(excess, a, b, rtol=1e-12))
                     better = pair[1] if high > 0 else pair[0]
                     found.append({"quantity": quantity, "seals": list(pair), "speed": speed, "better_above": better})
     return found
@@ -405,13 +403,11 @@ def _curves(numbers, name: str, axis: Axis, first: bool = False) -> list[Series]
     road = "formula" if numbers["formula_holds"] else "linear algebra"
     for seal in SEALS:
         held, (colour, mark) = numbers[seal], STYLE[seal]
-        lines = ([v if there is stable else None for v, there in zip(held[name], held["stable"], strict=True)]
-                 for stable in (True, False))  # fmt: skip
-        for line, style, words in zip(
-            lines, (f"{colour} thick", f"{colour} dotted thin"), (road, "not damped"), strict=True
-        ):
+        for stable, style, words in ((True, "thick", road), (False, "dotted thin", "not damped")):
+            line = [v if there is stable else None for v, there in zip(held[name], held["stable"], strict=True)]
             if any(value is not None for value in line):
-                series.append(Series("line", speed, line, label=f"{seal.upper()}, {words}" * first, style=style))
+                label = f"{seal.upper()}, {words}" * first
+                series.append(Series("line", speed, line, label=label, style=f"{colour} {style}"))
         if numbers["formula_holds"]:
             algebra = zip(held["linear_algebra"][name], held["stable"], strict=True)
             series.append(Series("line", speed, [v if there else None for v, there in algebra],

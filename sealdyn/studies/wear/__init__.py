@@ -103,7 +103,7 @@ def run(scenario, settings, tools) -> Answer:
     rows, end = _history(runs, hats, Control(rough, settings.accuracy, settings.step * rough), settings, tools)
     numbers = _numbers(runs, hats, wears, rows, warm.coned_by if warm is not None else 0.0) | {"end": end}
     if end["kind"] == "run-in" and settings.run_in == "extrapolate":
-        numbers["extrapolated"] = _extrapolated(numbers, rows[-1], hats, wears, settings.duration)
+        numbers["extrapolated"] = _extrapolated(rows[-1], wears, settings.duration)
     numbers["status"] = end["kind"] if end["kind"] in (Status.COLLAPSED, Status.FAILED) else Status.OK
     return Answer(numbers, _found(numbers), _tables(numbers, settings), _panels(numbers), _limits(numbers, settings))
 
@@ -256,13 +256,11 @@ def _slope(hats, gap) -> float:
     return float(np.linalg.solve(lines @ hats.mass @ lines.T, lines @ hats.mass @ gap)[1])
 
 
-def _extrapolated(numbers, row, hats, wears, duration) -> dict:
+def _extrapolated(row, wears, duration) -> dict:
     """Depths at the asked duration if the rates stay."""
     left, both = duration - row["time"], sum(wears.values())
     depth = np.array(row["depth"]) + left * np.array(row["rate"])
-    return {"time": duration, "from": row["time"]} | {
-        face: (k / both * depth).tolist() for face, k in wears.items()
-    }  # fmt: skip
+    return {"time": duration, "from": row["time"], **{face: (k / both * depth).tolist() for face, k in wears.items()}}
 
 
 # --- what is shown ----------------------------------------------------------------------------------------
