@@ -402,10 +402,7 @@ def _over_radius(numbers, edges, placed: bool) -> Panel:
     centre, levels = numbers["centre_of_pressure"], []
     if centre is not None and 0 <= centre <= 1:
         high, low = edges[::-1] if numbers["high_pressure"] == "outer" else edges
-        levels.append(
-            Level(
-                high + centre * (low - high), "centre of gauge pressure", upright=True, style="grey dotted", legend=True
-            )
-        )
+        place = high + centre * (low - high)
+        levels = [Level(place, "centre of gauge pressure", upright=True, style="grey dotted", legend=True)]
     return Panel("Over the radius", Axis("radius", low=edges[0], high=edges[1]), Axis("pressure", "film pressure"),
                  series, levels)  # fmt: skip

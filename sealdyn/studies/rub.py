@@ -292,10 +292,8 @@ def _exponents(along, answer, rows) -> Panel:
         label = row["class"] if row["class"] in CLASSES else "period n"
         series.append(Series("marks", [row["value"] + aside[row["direction"]]], [row["exponent"]], label=label,
                              style=f"{_style(row)} {mark} small", error=[row["uncertainty"]]))  # fmt: skip
-    zero = Level(0.0, style="black")
-    return Panel(
-        "Largest Lyapunov exponent", along, Axis("1", "exponent a period"), series, [zero], below=True, tall=0.7
-    )
+    axis, zero = Axis("1", "exponent a period"), Level(0.0, style="black")
+    return Panel("Largest Lyapunov exponent", along, axis, series, [zero], below=True, tall=0.7)
 
 
 def _separation(answer) -> Panel:
@@ -331,10 +329,8 @@ def _whirl(answer) -> Panel:
         words, colour = f"{in_words('speed', row['speed'], 5)}: {row['fate']}", CYCLE[k % len(CYCLE)]
         turns = np.arange(len(row["amplitudes"]))
         series.append(Series("line", turns, row["amplitudes"], label=words, style=f"{colour} thin"))
-    axis = Axis("misalignment", "relative tilt", scale="log")
-    return Panel(
-        "A small whirl", Axis("1", "turns"), axis, series, first=not (answer["separation"] or answer["methods"])
-    )
+    axis, first = Axis("misalignment", "relative tilt", scale="log"), not (answer["separation"] or answer["methods"])
+    return Panel("A small whirl", Axis("1", "turns"), axis, series, first=first)
 
 
 def _chosen(rows, answer) -> list[dict]:

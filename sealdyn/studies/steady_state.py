@@ -2,6 +2,7 @@
 multipliers, instead of waiting for transients."""
 
 import math
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 
@@ -71,10 +72,8 @@ def run(scenario, settings, tools) -> Answer:
     try:
         finder = _finder(HarmonicBalance, scenario, settings)
     except NoOrbit as reason:
-        try:
+        with suppress(NoOrbit):
             return _turning(ForcedWave(scenario.scene, scenario.run.accuracy), settings)
-        except NoOrbit:
-            pass
         try:
             finder = _finder(FilmBalance, scenario, settings)
         except NoOrbit:

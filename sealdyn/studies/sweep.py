@@ -3,6 +3,7 @@
 import contextlib
 import itertools
 import math
+from collections import Counter
 from dataclasses import dataclass
 from functools import partial
 
@@ -220,4 +221,4 @@ def _is_number(value) -> bool:
 
 def counted(words) -> str:
     """How often each word is there: "20 ok, 1 collapsed"."""
-    return ", ".join(f"{words.count(word)} {word}" for word in dict.fromkeys(words))
+    return ", ".join(f"{count} {word}" for word, count in Counter(words).items())

@@ -214,12 +214,13 @@ def _difference(one: EvenAngleSink, other: EvenAngleSink):
 
 def told(run, outcome, samples, free, records) -> Passed:
     """What a trip leaves; `records` (run, record) of its parts are put together."""
-    low, most = [], []
-    for own, r in records:
-        if math.isfinite(r[H]):
-            low.append((float(r[H]), own.end_time(int(r[H_LEG]), float(r[H_TAU]))))
-        if math.isfinite(r[MOST]):
-            most.append((float(r[MOST]), own.end_time(int(r[MOST_LEG]), float(r[MOST_TAU]))))
+
+    def found(value, leg, tau):
+        """Extremes and their times (s), of the parts that have one."""
+        return [(float(r[value]), own.end_time(int(r[leg]), float(r[tau]))) for own, r in records
+                if math.isfinite(r[value])]  # fmt: skip
+
+    low, most = found(H, H_LEG, H_TAU), found(MOST, MOST_LEG, MOST_TAU)
     lowest, largest = min(low, default=(math.nan, 0.0)), max(most, default=(0.0, 0.0))
     level = max(run.model.face[TOUCH], run.model.face[COLLAPSE])
     touched = outcome.status == Status.COLLAPSED or lowest[0] <= level
@@ -246,8 +247,7 @@ def quasi_static(scenario, key: str, begin: float, end: float) -> dict:
 
 def _visited(scenario, key, values) -> tuple[RunState, list[int]]:
     """The scene with its own tables and behind them a staircase of values of the key, and the segments that begin
-    there:
-    the closing force stays the law that the scene's start decides, as it does on a trip."""
+    there: the closing force stays the law that the scene's start decides, as it does on a trip."""
     first = tables_end(scenes.with_values(scenario.scene, {key: float(values[0])}))
     times = [first + n for n in range(len(values))]
     points = [(0.0, values[0])] * (first > 0.0) + list(zip(times, values, strict=True))

@@ -1,5 +1,6 @@
 """Tolerance: what the scatter of manufacture and operation does to the seal, and which tolerance to tighten first."""
 
+from collections import Counter
 from dataclasses import dataclass
 from functools import partial
 
@@ -239,8 +240,7 @@ def contact_of(row: dict, margin: float) -> float:
 
 def ends(rows) -> dict[str, int]:
     """How many runs ended how."""
-    words = [str(row.get("status", "not possible")) for row in rows]
-    return {word: words.count(word) for word in sorted(set(words))}
+    return dict(sorted(Counter(str(row.get("status", "not possible")) for row in rows).items()))
 
 
 # --- what is shown -----------------------------------------------------------------------------------------
@@ -273,9 +273,8 @@ def _notes(numbers, rows) -> list[str]:
         rivals = [row["key"] for row in others if row["total_high"] > first["total_low"]]
         notes += [f"May matter as much: {', '.join(rivals)}; more samples tell."] if rivals else []
         rough = [row["key"] for row in (first, *others) if row["first"] - row["total"] > ROUGHLY]
-        notes += (
-            [f"First index above the total of {', '.join(rough)}: so few samples give tenths only."] if rough else []
-        )
+        if rough:
+            notes.append(f"First index above the total of {', '.join(rough)}: so few samples give tenths only.")
     elif numbers["sobol"]["total"] is None or not numbers["sobol"]["total"][name]:
         why = numbers["sobol"]["reason"] or f"only {numbers['sobol']['base_points'][name]} samples have all their runs"
         notes.append(f"No indices: {why}.")

@@ -348,24 +348,17 @@ def _panels(numbers) -> list[Panel]:
     time = np.array(history["time"])
     shown = np.unique([int(np.argmin(np.abs(time - t))) for t in np.linspace(0.0, time[-1], LINES)])
 
-    def over_radius(rows, quantity):
-        return [
-            Series(
-                "line",
-                radius,
-                rows[k],
-                style=f"{time[k] / time[-1]:.3g}",
-                label=in_words("time", time[k], digits=3) if quantity == "depth" else "",
-            )
-            for k in shown
-        ]
+    early_to_late = [(k, f"{time[k] / time[-1]:.3g}", in_words("time", time[k], digits=3)) for k in shown]
+
+    def over_radius(rows, named):
+        return [Series("line", radius, rows[k], style=style, label=when * named) for k, style, when in early_to_late]
 
     panels, later = [], numbers["extrapolated"]
     worn = [face for face in ("stator", "rotor") if np.any(numbers["profile"][face])] or ["stator"]
     for face in worn:
         depth = np.array(numbers["profile"][face])
         note = "" if depth.max() > 0.0 else "does not wear"
-        series = over_radius(depth, "depth" if face == worn[0] else "m") if depth.max() > 0.0 else []
+        series = over_radius(depth, face == worn[0]) if depth.max() > 0.0 else []
         if later and max(later[face]) <= FAR * depth.max():
             series.append(Series("line", radius, later[face], style="grey dotted",
                                  label=f"{_time(later['time'])} extrapolated"))  # fmt: skip
@@ -373,7 +366,7 @@ def _panels(numbers) -> list[Panel]:
             note = f"extrapolated to {_time(later['time'])}: {in_words('depth', max(later[face]))}, not computed"
         panels.append(Panel(f"{face.capitalize()}: worn off", along, Axis("depth"), series, note=note, down=True,
                             below=bool(panels), tall=0.75))  # fmt: skip
-    panels.append(Panel(title, along, Axis("m", "gap"), over_radius(gap, "m"), below=True, tall=0.75))
+    panels.append(Panel(title, along, Axis("m", "gap"), over_radius(gap, False), below=True, tall=0.75))
     panels.append(_pressed(numbers, along))
     return [*panels, *_course(history, worn)]
 
@@ -387,15 +380,8 @@ def _pressed(numbers, along: Axis) -> Panel:
     note = f"start: up to {in_words('Pa*m/s', pv[0].max())}" if pv[0].max() > top else ""
     series = [Series("line", radius, pv[0], label="start", style="warn thick"),
               Series("line", radius, pv[-1], label="end", style="film")]  # fmt: skip
-    return Panel(
-        "Contact pressure times sliding speed",
-        along,
-        Axis("Pa*m/s", " ", low=0.0, high=1.08 * top or None),
-        series,
-        note=note,
-        below=True,
-        tall=0.75,
-    )
+    axis = Axis("Pa*m/s", " ", low=0.0, high=1.08 * top or None)
+    return Panel("Contact pressure times sliding speed", along, axis, series, note=note, below=True, tall=0.75)
 
 
 def _course(history, worn) -> list[Panel]:
