@@ -1,5 +1,4 @@
-"""A run as charts want it: turns instead of time, series thinned without losing an extreme, words for titles; and
-which points of a study have an answer."""
+"""A run as charts want it: turns instead of time, series thinned without losing an extreme, words for titles."""
 
 from functools import cached_property
 from itertools import takewhile
@@ -17,11 +16,6 @@ MILLISECONDS = factor_of("s", "ms") or 1.0
 LONG = 2.0
 # How many of the everyday unit of radii, of that of films, and of that of angles make one in SI.
 MM, UM, DEG = (everyday(name)[1] for name in ("radius", "m", "angle"))
-
-
-def done(rows) -> list[dict]:
-    """The rows of a study's points that did not fail."""
-    return [row for row in rows if "failed" not in row]
 
 
 class Run:

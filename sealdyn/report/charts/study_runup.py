@@ -1,5 +1,7 @@
 """A run-up: one order over the speed, up and down; waterfall; growth of the whirl; how fast it must be passed."""
 
+from itertools import cycle
+
 import numpy as np
 
 from ...answers import CYCLE, Axis, Level, Panel, Series
@@ -8,7 +10,6 @@ from ...quantities import everyday, in_words, quantity, reading_in
 from ..panels import study_sheet
 from ..text import written_units
 from .page import save
-from .record import done
 
 # Of an extreme of a trip: the series it is of, its name, quantity, which extreme it is.
 LOADS = {"h_min": ("film", "Thinnest film", "h_min", "smallest"),
@@ -40,7 +41,7 @@ def draw(path, out):
 
 def _runs(answer):
     """(colour, row) of every run that was possible."""
-    return [(CYCLE[k % len(CYCLE)], row) for k, row in enumerate(done(answer["rows"]))]
+    return list(zip(cycle(CYCLE), [row for row in answer["rows"] if "failed" not in row], strict=False))
 
 
 # --- shaft speed ------------------------------------------------------------------------------------------
