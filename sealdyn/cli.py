@@ -559,13 +559,13 @@ def validate(
     as_json: AsJson = False,
 ):
     """Compare published numbers with what the program computes: all sources, or one."""
-    from .analysis.sources import checks, report, source_names
+    from .analysis.sources import checks, report, source_names, wanted_sources
 
-    names = source_names()
-    wanted = names if source is None else [source.replace("_", "-")]
-    if not set(wanted) <= set(names):
-        near = _nearest(wanted[0], names)
-        raise Stop(Status.INVALID, f'source: found "{source}"; expected one of {", ".join(names)}{near}')
+    try:
+        wanted = wanted_sources(source)
+    except ValueError as error:
+        near = _nearest(source.replace("_", "-"), source_names())
+        raise Stop(Status.INVALID, f"{error}{near}") from None
     with Progress(), libraries_on_stderr():
         found = checks(wanted)
     rows = [row for part in found.values() for row in part]

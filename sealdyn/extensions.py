@@ -10,7 +10,6 @@ import hashlib
 import importlib
 import os
 import sys
-from collections.abc import Iterator
 from functools import cache
 from importlib.metadata import entry_points
 from importlib.util import find_spec
@@ -51,6 +50,11 @@ def in_folders(room: str) -> list[str]:
     """Names of the files that SEALDYN_PATH has of a room, sorted."""
     found = (Path(folder).glob("*.py") for folder in folders(room))
     return sorted({file.stem for files in found for file in files if not file.stem.startswith("_")})
+
+
+def outside_names(room: str) -> set[str]:
+    """Names of all that comes from outside into a room."""
+    return {*in_folders(room), *installed(room)}
 
 
 def source_of(room: str, name: str) -> Path | None:
@@ -125,15 +129,11 @@ def use(room: str, file: Path) -> str:
 
 def all_digests() -> dict[str, str]:
     """Digests of all that comes from outside, by "films/NAME" and its like."""
-    return {f"{room}/{name}": found for room, name in _all() if (found := digest(room, name))}
+    every = ((room, name) for room in ROOMS for name in sorted(outside_names(room)))
+    return {f"{room}/{name}": found for room, name in every if (found := digest(room, name))}
 
 
 def is_outside(source: Path) -> bool:
     """Whether a file is the source of something from outside."""
     beside = any(str(source.parent) == folder for room in ROOMS for folder in folders(room))
     return beside or any(source == source_of(room, name) for room in ROOMS for name in installed(room))
-
-
-def _all() -> Iterator[tuple[str, str]]:
-    for room in ROOMS:
-        yield from ((room, name) for name in sorted({*in_folders(room), *installed(room)}))

@@ -36,7 +36,7 @@ from ..solvers.methods import METHODS
 from ..status import Status
 from . import design_rules as rules
 from . import other_rules
-from .sources import checks, source_names, sources_of_film
+from .sources import checks, sources_of_film, wanted_sources
 
 # Of a shipped run's length: what is computed of it to have its kernels compiled.
 SHARE = 0.05
@@ -184,11 +184,7 @@ def validate(source: str | None = None) -> list[dict[str, Any]]:
     >>> "FAILED" in {row["verdict"] for row in sealdyn.validate("green-1989")}
     False
     """
-    names = source_names()
-    wanted = names if source is None else [source.replace("_", "-")]
-    if not set(wanted) <= set(names):
-        raise ValueError(f'source: found "{source}"; expected one of {", ".join(names)}')
-    return [row for rows in checks(wanted).values() for row in rows]
+    return [row for rows in checks(wanted_sources(source)).values() for row in rows]
 
 
 def compare(one: str | os.PathLike, other: str | os.PathLike) -> dict[str, Any]:

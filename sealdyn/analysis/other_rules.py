@@ -176,16 +176,16 @@ def _lip_eccentricity(scene, limit) -> Finding:
     )
 
 
-def _lip_load(scene, limit) -> Finding:
-    load = _preload(scene)
-    sentence = f"the lip presses with {load:.4g} N/m, usual are {limit[0]:g} to {limit[1]:g}"
-    return limit_finding(sentence, load, *limit, beyond=Verdict.NOTE)
+def _preload(what: str):
+    """Rule of the radial preload (N/m) along the circumference, of `what` presses."""
 
+    def judge(scene, limit) -> Finding:
+        followers = followers_of(scene)
+        load = followers.preload / followers.arc
+        sentence = f"{what} presses with {load:.4g} N/m, usual are {limit[0]:g} to {limit[1]:g}"
+        return limit_finding(sentence, load, *limit, beyond=Verdict.NOTE)
 
-def _preload(scene) -> float:
-    """Radial preload (N/m) along the circumference."""
-    followers = followers_of(scene)
-    return followers.preload / followers.arc
+    return judge
 
 
 def _lip_pressure(scene, limit) -> Finding:
@@ -213,12 +213,6 @@ def _segment_runout(scene, limit) -> Finding:
     runout, most = 2.0 * scene.shaft.eccentricity, limit * 2.0 * scene.shaft.radius
     sentence = f"{1e3 * runout:.3g} mm TIR, {limit:g} of the diameter are {1e3 * most:.3g} mm"
     return limit_finding(sentence, runout, most=most, beyond=Verdict.NOTE)
-
-
-def _garter_load(scene, limit) -> Finding:
-    load = _preload(scene)
-    sentence = f"the garter spring presses with {load:.4g} N/m, usual are {limit[0]:g} to {limit[1]:g}"
-    return limit_finding(sentence, load, *limit, beyond=Verdict.NOTE)
 
 
 def _axial_load(scene, limit) -> Finding:
@@ -261,21 +255,23 @@ def _other_lips(sentence: str):
 FOLLOW, TYPES = "sealdyn study followability FILE", "tables 3.1 to 3.4 and 3.8"
 LIP = {
     "lip_eccentricity": Rule(_other_lips("section 3.1.4 is of hydrodynamic lips"), None, "m", "section 3.1.4", FOLLOW),
-    "lip_load": Rule(_lip_load, (87.5, 123.0), "N/m", "lip load of conventional lips", FOLLOW),
+    "lip_load": Rule(_preload("the lip"), (87.5, 123.0), "N/m", "lip load of conventional lips", FOLLOW),
     "lip_pressure": Rule(_lip_pressure, (LIP_PRESSURE, LIP_PRESSURE_SPEED), "m/s", "table 3.1"),
     "lip_speed": Rule(_lip_speed, (LIP_ECCENTRICITY, LIP_SPEED), "m/s", "table 3.2", FOLLOW),
     "seal_type": Rule(_seal_type("conventional lip seal"), None, "m/s", TYPES),
 }
 RIBBED_LIP = {
     "lip_eccentricity": Rule(_lip_eccentricity, RIBBED_ECCENTRICITY, "m", "section 3.1.4", FOLLOW),
-    "lip_load": Rule(_lip_load, (52.5, 70.0), "N/m", "lip load of hydrodynamic lips", FOLLOW),
+    "lip_load": Rule(_preload("the lip"), (52.5, 70.0), "N/m", "lip load of hydrodynamic lips", FOLLOW),
     "lip_pressure": Rule(_lip_pressure, (RIBBED_PRESSURE, RIBBED_SPEED), "m/s", "table 3.3"),
     "lip_speed": Rule(_other_lips("table 3.2 is of conventional lips"), None, "m/s", "table 3.2", FOLLOW),
     "seal_type": Rule(_seal_type("hydrodynamic lip seal"), None, "m/s", TYPES),
 }
 CIRCUMFERENTIAL = {
     "axial_load": Rule(_axial_load, (50.0, 90.0), "N/m", "axial load about 70 N/m", FOLLOW),
-    "garter_load": Rule(_garter_load, (17.5, 35.0), "N/m", "radial garter load 17.5 to 35 N/m", FOLLOW),
+    "garter_load": Rule(
+        _preload("the garter spring"), (17.5, 35.0), "N/m", "radial garter load 17.5 to 35 N/m", FOLLOW
+    ),
     "hang_up": Rule(_hang_up, None, "N", "friction on the case flange", "sealdyn run FILE"),
     "seal_type": Rule(_seal_type("circumferential seal"), None, "m/s", TYPES),
     "segment_pressure": Rule(_segment_pressure, SEGMENT_PRESSURE, "Pa", "below 0.689 N/cm^2"),

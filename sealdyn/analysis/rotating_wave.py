@@ -8,7 +8,7 @@ aligned seal at the stability threshold (a Hopf bifurcation): falling speed mean
 **Valid** rings, supports and film alike in all directions (all of this package's), constant parameters.
 """
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -243,7 +243,7 @@ def kind_of(family: list[Whirl], threshold: float) -> str:
 def family_columns(family: list[Whirl]) -> dict:
     """Columns of a family of whirls, in SI."""
     names = {n: n for n in ("speed", "amplitude", "frequency", "opening", "h_min")} | {"growth_rate": "growth"}
-    return {key: [asdict(w)[name] for w in family] for key, name in names.items()}
+    return {key: [getattr(w, name) for w in family] for key, name in names.items()}
 
 
 def compared(row: dict, family: list[Whirl], stable: bool) -> dict:
@@ -316,17 +316,17 @@ class ModeOverSpeed:
         return self._factor(high) - self._factor(low)
 
 
-def tilt_mode(model: Model, low: float, high: float, at: float, interval=None) -> ModeOverSpeed:
+def tilt_mode(model: Model, low: float, high: float, at: float) -> ModeOverSpeed:
     """The tilt mode that is least damped at the speed `at` (rad/s), over speeds from low to high.
     Raises ValueError for a scene with a massless ring or a film that stores."""
-    if not np.all(np.diag(model.linear_scene(interval).mass) > 0):
+    if not np.all(np.diag(model.linear_scene().mass) > 0):
         raise ValueError("a massless ring has no rates to follow its whirl by")
     speeds = np.linspace(low, high, POINTS)
     begin = int(np.argmin(np.abs(speeds - at)))
     values, vectors, lefts = [None] * POINTS, [None] * POINTS, [None] * POINTS
 
     def take(k, near):
-        every = _turning(model.linear_scene(interval, speed=float(speeds[k])))
+        every = _turning(model.linear_scene(speed=float(speeds[k])))
         n = int(np.argmax(every[0].real)) if near is None else int(np.argmin(np.abs(every[0] - near)))
         values[k], vectors[k], lefts[k] = every[0][n], every[1][n], every[2][n]
 

@@ -9,6 +9,7 @@ from enum import StrEnum
 import numpy as np
 
 from ..dynamics.imposed_motion import rest_state
+from ..dynamics.interface import flow_at_rest
 from ..dynamics.intervals import constant_and_slope, largest_value
 from ..dynamics.model import Model
 from ..faces.contact import contact_load_and_friction
@@ -168,10 +169,8 @@ class Seal:
     @property
     def leakage(self) -> float:
         """Leakage (m^3/s) of the aligned faces, at the start.  Raises SceneError where the film has no solution."""
-        film, f = self.model.observed
         s = rest_state(self.model.scene, self.model.clearance, self.model.start)[0]
-        own = [self.model.interface.steady(f, s)] if self.model.interface.unknowns is not None else []
-        film.flow(f, s, *own)
+        flow_at_rest(self.model.interface, s, self.model.observed)
         return abs(float(s[FLOW_INNER if self.model.closing.outer_is_high else FLOW_OUTER]))
 
     @property

@@ -196,20 +196,12 @@ def bounded_or_not(
     `start` "small" (a tenth of contact) or "large" (displacements `shape` (n,), turning at `frequency`, rad/s).
     """
     model = free_model(scene, speed)
-    unit = contact_tilt_aligned(model)
-    linear = max(m.value.real for m in model.linear_scene().modes() if m.kind == "tilt")
+    unit, linear = contact_tilt_aligned(model), linear_growth(model)
     frequency_of_turns = pace(model, speed) / (2 * math.pi)
     method, whole = _method(model), int(9 / abs(linear) * frequency_of_turns) + 50
     if method != "adams" and whole > SHOWS * most:
         said = f"a whirl that grows or decays by {abs(linear):.2g} 1/s takes {whole:.2g} turns to go anywhere"
-        return {
-            "fate": TOO_SLOW,
-            "from": None,
-            "whirl": None,
-            "turns": float(whole),
-            "rate": float(linear),
-            "said": said,
-        }
+        return {"fate": TOO_SLOW, "from": None, "whirl": None, "turns": float(whole), "rate": linear, "said": said}
     turns = min(most, whole)
     begin = 0.1 * unit if start == "small" else (np.array(shape), frequency)
     least = 0.03 * unit

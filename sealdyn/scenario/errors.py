@@ -15,7 +15,6 @@ from ..scene.scene import SceneError
 from ..unit_names import spelled_like
 from ..units import (
     Density,
-    Length,
     ListedQuantity,
     Quantity,
     QuantityError,
@@ -25,9 +24,9 @@ from ..units import (
     printable,
     quoted,
 )
-from .keys import diameters, is_list, table_in, tables, without_indices
+from .keys import LENGTH, diameters, is_list, table_in, tables, without_indices
 
-LENGTH, VELOCITY, DENSITY = (kind.__metadata__[0] for kind in (Length, Velocity, Density))
+VELOCITY, DENSITY = (kind.__metadata__[0] for kind in (Velocity, Density))
 KINEMATIC = Quantity("kinematic viscosity", "m^2/s", '"1 cSt"')
 NOTHING = object()
 MISSING = ("nothing", "no such table")

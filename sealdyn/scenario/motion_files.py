@@ -76,7 +76,7 @@ def with_columns(
     wrong: list[SceneError] = []
     bare: list[str] = []
     for table, known in (PLACES | over_time).items():
-        motion, kept, key = samples_at(raw, table), samples_at(held, table), f"{table}.file"
+        motion, kept, key = table_at(raw, table), table_at(held, table), f"{table}.file"
         first, file = next(iter(known)), motion.get("file")
         if "file" not in motion or first in motion:
             continue
@@ -133,7 +133,7 @@ def quantities_of_files(raw: dict, kind: type) -> dict[str, dict]:
 
 def _end(raw: dict) -> float | None:
     """End (s) of the run that the tables ask for, where it can be read from them."""
-    run, shaft = samples_at(raw, "run"), samples_at(raw, "shaft")
+    run, shaft = table_at(raw, "run"), table_at(raw, "shaft")
     try:
         if "duration" in run:
             return SECONDS.read(run["duration"])
@@ -194,9 +194,9 @@ def part_at(tables: Any, key: str) -> Any:
     return tables
 
 
-def samples_at(tables: Any, table: str) -> dict:
-    """The samples at a dotted place of tables; empty without any."""
-    found = part_at(tables, table)
+def table_at(tables: Any, key: str) -> dict:
+    """The table at a dotted key of tables; empty if it is none (the reader says so)."""
+    found = part_at(tables, key)
     return found if isinstance(found, dict) else {}
 
 

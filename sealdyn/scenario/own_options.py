@@ -15,7 +15,7 @@ from functools import cache
 from pydantic import TypeAdapter
 from pydantic.errors import PydanticUserError
 
-from ..extensions import OUTSIDE, OutsideError, digest, in_folders, installed, outside_module
+from ..extensions import OUTSIDE, OutsideError, digest, outside_module, outside_names
 from ..films import own_film_names
 from ..scene.film import Film
 from ..scene.forces import Load
@@ -36,7 +36,7 @@ def all_outside() -> tuple[tuple[str, str], ...]:
     """All films and loads that there are outside and can be read: ("films/NAME", digest of its source)."""
     found = []
     for room in HAS:
-        for word in sorted({*in_folders(room), *installed(room)} - {*own_film_names(), *KEYS[room]}):
+        for word in sorted(outside_names(room) - {*own_film_names(), *KEYS[room]}):
             with contextlib.suppress(OutsideError):
                 options_of(room, word)
                 found.append((f"{room}/{word}", digest(room, word)))

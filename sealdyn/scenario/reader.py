@@ -25,7 +25,7 @@ from ..unit_names import spelled_like
 from ..units import is_gauge, quoted
 from .errors import ScenarioError, scene_errors_of, set_by
 from .keys import bare_keys, leaves
-from .motion_files import PLACES, is_asked, part_at, quantities_of_files, samples_at, whole_file, with_part
+from .motion_files import PLACES, is_asked, part_at, quantities_of_files, table_at, whole_file, with_part
 from .overrides import (
     as_written,
     key_and_words,
@@ -38,7 +38,7 @@ from .overrides import (
     value_of,
     without_arrays,
 )
-from .tables import Run, kind_of, kind_of_scene, read_tables, table_of
+from .tables import Run, kind_of, kind_of_scene, read_tables
 
 __all__ = [
     "Run",
@@ -237,7 +237,7 @@ def _same_outside(made_with: Any, held: dict, asked: Set[str]) -> None:
         room, _, called = str(place).partition("/")
         for table in (table for table, held_in in OUTSIDE.items() if held_in == room):
             key, what = f"{table}.model", room.removesuffix("s")
-            if is_asked(key, asked) or samples_at(held, table).get("model") != called:
+            if is_asked(key, asked) or table_at(held, table).get("model") != called:
                 continue
             if (today := digest(room, called)) == made:
                 continue
@@ -269,7 +269,7 @@ def parse_scenario(
         raw = _tables_of(text, overrides)
         refuse_unbounded(raw)
         found = read_tables(raw, folder=path and path.parent, held=held, asked=asked)
-    gauge = frozenset(f"film.{key}" for key, value in table_of(raw, "film").items() if is_gauge(value))
+    gauge = frozenset(f"film.{key}" for key, value in table_at(raw, "film").items() if is_gauge(value))
     found |= {"text": text, "question": _question(text), "overrides": list(overrides), "gauge": gauge}
     return Scenario(**found, name=name.removesuffix(".toml"), path=path)
 

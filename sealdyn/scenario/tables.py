@@ -12,7 +12,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, TypeAdapter, ValidationError
 
 from .. import __version__
-from ..extensions import OUTSIDE, OutsideError, digest, in_folders, installed
+from ..extensions import OUTSIDE, OutsideError, digest, outside_names
 from ..films import all_film_names, film_of, own_film_names
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene import Strict
@@ -25,7 +25,7 @@ from ..scene.radial import RADIAL, RadialScene, radial_errors
 from ..scene.rings import INERTIAL, RING_NAMES, with_inertia
 from ..scene.scene import Scene, SceneError
 from ..unit_names import spelled_like
-from ..units import Length, QuantityError, Time, quoted
+from ..units import QuantityError, Time, quoted
 from .errors import (
     CIRCUMFERENTIAL_RULES,
     LIP_RULES,
@@ -34,8 +34,8 @@ from .errors import (
     refuse,
     unknown_rules,
 )
-from .keys import bare_keys, held_at, leaves, radius_key, with_radii
-from .motion_files import samples_at, with_columns
+from .keys import LENGTH, bare_keys, held_at, leaves, radius_key, with_radii
+from .motion_files import part_at, table_at, with_columns
 
 # Raised when a key is renamed, goes, or means something else; new keys alone do not raise it.
 SCHEMA = 1
@@ -176,7 +176,7 @@ def named_outside(raw: dict) -> tuple[tuple[str, str], ...]:
     what cannot be read, for a load that is not there, and for a film that is not but has options."""
     found = set()
     for place, room in OUTSIDE.items():
-        table, known = samples_at(raw, place), (Film if room == "films" else Load).__dataclass_fields__
+        table, known = table_at(raw, place), (Film if room == "films" else Load).__dataclass_fields__
         options = [key for key, held in table.items() if isinstance(held, dict) or dataclasses.is_dataclass(held)]
         model = table.get("model")
         for word in [model, *(key for key in options if key not in known)]:
@@ -192,7 +192,7 @@ def named_outside(raw: dict) -> tuple[tuple[str, str], ...]:
 
                 options_of(room, word)
             except OutsideError as error:
-                hint = "" if made else nearest_of(word, {*in_folders(room), *installed(room)})
+                hint = "" if made else nearest_of(word, outside_names(room))
                 key = f"{place}.{'model' if word == model else word}"
                 raise SceneError(key, error.found, error.expected + hint) from None
             found.add((f"{room}/{word}", made))
@@ -311,7 +311,7 @@ def refuse_extremes(value: Any, key: str = "", counted: float = LARGEST) -> None
 def _tilt_of_tir(raw: dict) -> Any:
     """`runout = "20 um TIR"`, the total indicator reading at the outer radius, becomes TIR / (2 r_o).  The runout as it
     was written where any of it is one, else None."""
-    rotor, outer = table_of(raw, "rotor"), table_of(raw, "film").get("outer_radius")
+    rotor, outer = table_at(raw, "rotor"), part_at(raw, "film.outer_radius")
     runout = rotor.get("runout")
     entries = runout.get("value") if isinstance(runout, dict) else [runout]
     if not isinstance(entries, list) or not any(map(_reading, entries)):
@@ -327,17 +327,12 @@ def _reading(entry: Any) -> re.Match | None:
 
 def _tilt(entry: Any, outer_radius: Any) -> Any:
     """The tilt (rad) of a total indicator reading; anything else as it is."""
-    reading, length = _reading(entry), Length.__metadata__[0]
+    reading = _reading(entry)
     try:
-        return length.read(reading[1]) / (2 * length.read(outer_radius)) if reading else entry
+        return LENGTH.read(reading[1]) / (2 * LENGTH.read(outer_radius)) if reading else entry
     except (QuantityError, ZeroDivisionError):
         # The reader of the tables says what is wrong with either.
         return entry
-
-
-def table_of(raw: dict, key: str) -> dict:
-    """A table of the file, empty if it is none (the reader says so)."""
-    return raw[key] if isinstance(raw.get(key), dict) else {}
 
 
 def _bodies(file: ScenarioFile, raw: dict) -> Iterator[SceneError]:
@@ -346,22 +341,22 @@ def _bodies(file: ScenarioFile, raw: dict) -> Iterator[SceneError]:
         own, by_body = getattr(file, ring), with_inertia(getattr(file, ring))
         for key in INERTIAL:
             value, follows = getattr(own, key), getattr(by_body, key)
-            if key in table_of(raw, ring) and not math.isclose(value, follows, rel_tol=1e-9):
+            if key in table_at(raw, ring) and not math.isclose(value, follows, rel_tol=1e-9):
                 expected = f"nothing, or what follows from the body, {follows:g}"
                 yield SceneError(f"{ring}.{key}", f"{value:g} beside [{ring}.body]", expected)
 
 
 def _run_and_study(raw: dict) -> Iterator[SceneError]:
     """What depends on several keys: how long and how often, and that studies are tables."""
-    for study, settings in table_of(raw, "study").items():
+    for study, settings in table_at(raw, "study").items():
         if not isinstance(settings, dict):
             yield SceneError(f"study.{study}", quoted(settings), "a table [study.NAME] of a study's settings")
     for ring in RING_NAMES:
-        load = table_of(table_of(raw, ring), "load")
+        load = table_at(raw, f"{ring}.load")
         if "model" in load and "samples" in load:
             yield SceneError(f"{ring}.load.samples", "samples and a model", "one of the two")
     raw.setdefault("run", {})
-    run = table_of(raw, "run")
+    run = table_at(raw, "run")
     for one, other in (("turns", "duration"), ("samples_per_turn", "samples")):
         if one in run and other in run:
             yield SceneError(f"run.{one}", f"{one} and {other}", "one of the two")

@@ -14,16 +14,24 @@ from contextlib import closing, suppress
 from dataclasses import replace
 from functools import partial
 from itertools import product
+from threading import Event, Thread
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from ..archive import as_dataset, columns_of
+from ..dynamics.extrema import slack, watched_level
+from ..dynamics.native import thinnest_value
+from ..dynamics.tally import ROW, Tally
 from ..numerics.parallel import AT_ONCE, Together, processes
 from ..scenario.errors import ScenarioError
 from ..scenario.overrides import without_arrays
 from ..scenario.reader import Scenario, scenario_of, with_values
 from ..scene.radial import RadialScene
 from ..scene.scene import SceneError
-from ..solvers.contract import Status
+from ..solvers.contract import MOST_ORDERS, Cause, Counts, Status, tolerance_for
+from ..solvers.integrate import STIFF, Outcome
+from ..solvers.methods import looped
 from .result import (
     START,
     asks_speeds,
@@ -36,23 +44,12 @@ from .result import (
 )
 from .selection import prepare_run, starts_of
 from .simulate import in_memory, own_friction
-from .summary import state_names
+from .summary import parts, state_names
+from .verification_run import ProgressSink
 
 if TYPE_CHECKING:
     import pandas
     import xarray
-from threading import Event, Thread
-
-import numpy as np
-
-from ..dynamics.extrema import slack, watched_level
-from ..dynamics.native import thinnest_value
-from ..dynamics.tally import ROW, Tally
-from ..solvers.contract import MOST_ORDERS, Cause, Counts, tolerance_for
-from ..solvers.integrate import STIFF, Outcome
-from ..solvers.methods import looped
-from .summary import parts
-from .verification_run import ProgressSink
 
 # What is asked of a face seal, and of a radial one, unless told.
 OUTPUTS = ("h_min.value", "h_min.steady", "relative_misalignment.max")

@@ -217,13 +217,6 @@ def no_certificate(asked: float, why: str) -> dict:
     return {"asked": asked, **none, "said": f"no certificate: {why}"}
 
 
-def _interruption(asked: float, outcome: Outcome) -> tuple[dict, Outcome]:
-    """The certificate and the outcome of a run that was interrupted while it was measured."""
-    cause = Cause.INTERRUPTED
-    outcome = replace(outcome, status=Status.INTERRUPTED, cause=cause, message=str(cause))
-    return no_certificate(asked, "interrupted while the run was done once more"), outcome
-
-
 def _so_many(error: float | None, wanted: float, order: float) -> str:
     """How many times the cells there are bring their error, of an order, to what is wanted, in words."""
     known = error and math.isfinite(error)
@@ -310,12 +303,11 @@ def certificate(
             work = max(UNBOUNDED, budget(plan.method, outcome.counts))
             how = {"method": plan.method, "tolerance": outcome.tolerance, "work": work}
             stiff = plan.method == "radau" and _would_take_bdf(run)
-            apart, cells = (
-                seen.error_over_time(progress, stop, **how, stiff=stiff),
-                seen.change_by_halving(progress, stop, **how),
-            )
+            apart = seen.error_over_time(progress, stop, **how, stiff=stiff)
+            cells = seen.change_by_halving(progress, stop, **how)
         except Enough:
-            return _interruption(asked, outcome)
+            ended = replace(outcome, status=Status.INTERRUPTED, cause=Cause.INTERRUPTED, message=str(Cause.INTERRUPTED))
+            return no_certificate(asked, "interrupted while the run was done once more"), ended
         if seen.failure:
             why = f"no certificate: {seen.failure}"
             failed = replace(outcome, status=Status.INACCURATE, cause=Cause.DONE, message=why)

@@ -46,14 +46,14 @@ TINY, MARGIN = 1e-300, 1.5
 HELD = 1e-12
 
 
-def model_error(run: RunState, higher: str = "radial", enough: float = math.inf) -> float | None:
+def model_error(run: RunState, enough: float = math.inf) -> float | None:
     """The larger of `model_errors` (relative), or None."""
-    found = model_errors(run, higher, enough)
+    found = model_errors(run, enough)
     return None if found is None else float(found.max())
 
 
-def model_errors(run: RunState, higher: str = "radial", enough: float = math.inf) -> np.ndarray | None:
-    """Estimated difference of a linear film's scene from that with the film model `higher` over the run.
+def model_errors(run: RunState, enough: float = math.inf) -> np.ndarray | None:
+    """Estimated difference of a linear film's scene from that with the radial film over the run.
 
     On the states the linear film visits, the higher film pushes differently; that difference, as a force on the
     linearised rings, gives the difference of the motions (the defect of the lower film, answered linearly).
@@ -67,7 +67,8 @@ def model_errors(run: RunState, higher: str = "radial", enough: float = math.inf
     model, unknowns = run.model, run.model.unknowns
     if unknowns.has_residual_form or not unknowns.constant or not unknowns.linear:
         return None
-    if film_named(higher).accepts(replace(model.scene.film, model=higher), waves_of(model.scene)):
+    table = replace(model.scene.film, model="radial")
+    if film_named("radial").accepts(table, waves_of(model.scene)):
         return None
     segment = run.segment(0)
     _, answers, linear = segment.steady_motion()
@@ -79,8 +80,8 @@ def model_errors(run: RunState, higher: str = "radial", enough: float = math.inf
     # A ring that nothing brings back has no steady motion.
     if slowest > 0 or np.min(sizes) < HELD * np.max(sizes):
         return None
-    film = film_named(higher, model.scene.film)
-    block = film.parameters(replace(model.scene.film, model=higher), model.clearance, model.accuracy / 10)
+    film = film_named("radial", model.scene.film)
+    block = film.parameters(table, model.clearance, model.accuracy / 10)
     comparison = FilmComparison(segment, linear, film, block)
     # The steady state first: it is cheap, and on it what is left of the start no longer acts.
     worst = _steady_error(run.period(), linear, comparison, answers)

@@ -120,15 +120,20 @@ def contact_margin(model, at, linear, tilt, answers) -> tuple[float, str | None]
     return min(ends, key=lambda end: end[0])
 
 
+def _steady_state(model):
+    """The linearised scene, its answers and, of its steady state, the extremes and the period (s)."""
+    linear, period = model.linear_scene(), RunState(model, 1.0).period()
+    answers = linear.answers(model.segment().harmonics())
+    return linear, answers, (*steady_extremes(linear, answers, period), period)
+
+
 def limit_of_forcing(model_of: Callable[[float], Model], most: float) -> dict | None:
     """The least `value` of a forcing, up to `most`, at which something ends in linear theory, and what (`by`), of the
     `model_of` a value at its start; None where nothing does, or where that is not known."""
 
     def found(value):
         model = model_of(value)
-        linear, period = model.linear_scene(), RunState(model, 1.0).period()
-        answers = linear.answers(model.segment().harmonics())
-        tilt = (*steady_extremes(linear, answers, period), period)
+        linear, answers, tilt = _steady_state(model)
         return contact_margin(model, model.start, linear, tilt, lambda: answers)
 
     def beyond(value):
@@ -190,9 +195,7 @@ def linear_onset(scene, key: str, rough: float = 0.0) -> tuple[float, float]:
 
 def linear_film(model) -> tuple[float, float]:
     """Smallest film thickness (m) of the linear steady state, negative beyond touch, and its radius (m)."""
-    linear = model.linear_scene()
-    answers = linear.answers(model.segment().harmonics())
-    most, _, closing = steady_extremes(linear, answers, RunState(model, 1.0).period())
+    most, _, closing, _ = _steady_state(model)[-1]
     coning = model.face[3] + model.coning_change()
     inner, outer = model.clearance, model.clearance + coning * (model.face[1] - model.face[0])
     inner_left = inner - closing - model.face[0] * most

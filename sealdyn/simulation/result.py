@@ -2,33 +2,32 @@
 
 from __future__ import annotations
 
+import math
 import platform
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field
+from enum import StrEnum
 from functools import cache, cached_property
 from importlib.metadata import version
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from .. import __version__
 from ..archive.files import mark_sound
 from ..extensions import digest
 from ..kernel_cache import solvers_digest
+from ..scenario.errors import nearest_of
+from ..scenario.tables import outside_of
+from ..scene.radial import RadialScene
 
 if TYPE_CHECKING:
     import xarray
 
     from ..report.in_python import Plot
-import math
-from enum import StrEnum
-
-import numpy as np
-
-from ..scenario.errors import nearest_of
-from ..scenario.tables import outside_of
-from ..scene.radial import RadialScene
 
 
 @cache
@@ -39,15 +38,12 @@ def libraries() -> dict[str, str]:
 
 
 def provenance(scenario) -> dict[str, Any]:
-    """What every archive says of how it was made: versions, and of the scenario name, question and overrides."""
+    """What every archive says of how it was made: versions, of the scenario name, question and overrides, and today's
+    digests of the sources of what its scene has from outside, by "films/NAME"."""
+    outside = {place: digest(*place.split("/")) for place, _ in outside_of(scenario.scene)}
     return {"version": __version__, "solvers": solvers_digest(), "libraries": libraries(), "name": scenario.name,
             "question": scenario.question, "overrides": list(scenario.overrides),
-            **({"outside": outside} if (outside := _outside(scenario.scene)) else {})}  # fmt: skip
-
-
-def _outside(scene) -> dict[str, str | None]:
-    """Today's digests of the sources of what a scene has from outside, by "films/NAME"."""
-    return {place: digest(*place.split("/")) for place, _ in outside_of(scene)}
+            **({"outside": outside} if outside else {})}  # fmt: skip
 
 
 @dataclass(frozen=True, repr=False)

@@ -18,8 +18,8 @@ from ..dynamics.signals import (
 )
 from ..quantities import everyday
 from ..scene.radial import RadialScene
-from ..solvers.contract import Enough
 from ..solvers.run_error import EnergyAudit
+from .verification_run import ProgressSink
 
 # Single events kept in an archive; a seal that rubs for hours has more, which are counted.
 MOST_EVENTS = 20_000
@@ -52,14 +52,14 @@ def archived_series(model) -> tuple[dict[str, Series], Fields | None]:
     return series, Fields({x.name: Series(x.unit, x.long_name, *x.shown) for x in table}, grid, MOST_INSTANTS)
 
 
-class ArchiveSink:
+class ArchiveSink(ProgressSink):
     """Takes what the solver has integrated: signals into the archive (`writer`), restart data beside them.  Samples
     every `dt` (s), `count` intervals in all; `tally` (dynamics/tally.py) of the same run, or None; `progress(t, end)`
     (s) and `stop() -> bool` as in `simulate`, or None."""
 
     def __init__(self, run, writer, dt, count, tally, progress, stop):
-        self.run, self.writer, self.dt, self.count = run, writer, dt, count
-        self.tally, self.progress, self.stop = tally, progress, stop
+        super().__init__(run, progress, stop)
+        self.writer, self.dt, self.count, self.tally = writer, dt, count, tally
         self.audit, self.errors, self.seen = EnergyAudit(), None, None
         self.waiting = self.waiting_fields = None
         self.kept = np.rint(np.linspace(0, count, KEPT))
@@ -116,10 +116,7 @@ class ArchiveSink:
         """Flush what has been taken, with the state at segment time `tau` (s), `y` (size,); raises Enough when `stop`
         asks for it."""
         self.flush(segment.index, tau, y)
-        if self.progress:
-            self.progress(segment.time + tau, self.run.duration)
-        if self.stop and self.stop():
-            raise Enough
+        super().state(segment, tau, y)
 
     def flush(self, index, tau, y):
         """Write rows, what happened, and the state to go on from (segment index, `tau` (s), `y` (size,)): all three

@@ -21,6 +21,8 @@ FASTEST = 1000.0
 AROUND, POINTS_KNOWN = 1e3, 32
 # Halvings of the last step of the way to the last speed at which a film holds the closing force.
 HALVINGS = 20
+# What is found only where speeds are asked for.
+SEARCHED = ("speeds_held", "critical_speed", "thresholds", "resonance_speeds")
 
 
 def found_alone(failed: list[str], name: str, find):
@@ -45,7 +47,7 @@ def stability(model, interval, linear, speeds: bool, failed: list[str] | None = 
     slow = model.interface.stores and (waves_of(model.scene) or model.scene.film.pads)
     if speeds and (slow or grooves_of(model.scene)[1]):
         # Seconds at every speed: each way that the gap may move meets the film in its own way.
-        searched = {"speeds_held": None, "critical_speed": None, "thresholds": None, "resonance_speeds": None}
+        searched = dict.fromkeys(SEARCHED)
     elif speeds:
         every = found_alone(failed, "critical speeds", lambda: thresholds(model, interval))
         searched = {
@@ -72,9 +74,7 @@ def stability(model, interval, linear, speeds: bool, failed: list[str] | None = 
 
 def no_stability(model, interval) -> dict:
     """The same where it could not be found."""
-    unknown = ("verdict", "whirl_ratio", "speeds_held", "critical_speed", "thresholds", "resonance_speeds",
-               "growth_rate", "growth_rate_uncertainty")  # fmt: skip
-    scene = model.scene
+    unknown, scene = ("verdict", "whirl_ratio", *SEARCHED, "growth_rate", "growth_rate_uncertainty"), model.scene
     speed, stator_speed = (constant_and_slope(ring.speed, interval)[0] for ring in (scene.shaft, scene.stator))
     return dict.fromkeys(unknown) | {
         "speed": speed, "stator_speed": stator_speed, "fastest": FASTEST / scene.film.outer_radius, "modes": [],
@@ -205,6 +205,19 @@ def natural_frequency(model, interval=None) -> float:
     return float(np.exp(np.mean(np.log(sizes)))) if len(sizes) else 0.0
 
 
+def formula_numbers(ring, film_stiffness: float, film_damping: float) -> dict[str, float]:
+    """What closed forms of one floating ring are fed with: its own, and the film's in tilt (N m/rad, N m s/rad)."""
+    stiffness, damping = ring.support.tilt()
+    return {
+        "transverse_inertia": ring.transverse_inertia,
+        "polar_inertia": ring.polar_inertia,
+        "support_stiffness": stiffness,
+        "support_damping": damping,
+        "film_stiffness": film_stiffness,
+        "film_damping": film_damping,
+    }
+
+
 def by_formula(model) -> tuple[float | None, str]:
     """Closed form fed with the film's own coefficients (rad/s or None), and why there is none."""
     scene = model.scene
@@ -222,17 +235,9 @@ def by_formula(model) -> tuple[float | None, str]:
     formula, ring = (fmr_critical_speed, scene.rotor) if fmr else (fms_critical_speed, scene.stator)
     if ring.transverse_inertia == 0.0:
         return None, "a ring without inertia has no threshold"
-    stiffness, damping = ring.support.tilt()
     film_k, film_d = model.film_matrices()
     try:
-        speed = formula(
-            transverse_inertia=ring.transverse_inertia,
-            polar_inertia=ring.polar_inertia,
-            support_stiffness=stiffness,
-            support_damping=damping,
-            film_stiffness=float(film_k[1, 1]),
-            film_damping=float(film_d[1, 1]),
-        )
+        speed = formula(**formula_numbers(ring, float(film_k[1, 1]), float(film_d[1, 1])))
     except ValueError as error:
         return None, str(error)
     return speed, "" if speed is not None else f"{'FMR' if fmr else 'FMS'}: stable at every speed"

@@ -22,7 +22,7 @@ from ..solvers.contract import Status
 from ..solvers.run_error import missing_energy
 from .margin import aligned_flow, contact_margin, state_at_rest, steady_extremes
 from .plausibility import cautions, unit_warnings
-from .stability import found_alone, no_stability, stability
+from .stability import formula_numbers, found_alone, no_stability, stability
 
 ML_PER_H, KG_PER_H = 3.6e9, 3.6e3
 
@@ -389,16 +389,7 @@ def _closed_form(segment, at, linear, tilt):
     if arrangement == (True, True) or scene.stator.speed != 0.0 or other:
         return found
     ring = scene.stator if arrangement[0] else scene.rotor
-    stiffness, damping = ring.support.tilt()
-    numbers = dict(
-        speed=_first(scene.shaft.speed, at),
-        transverse_inertia=ring.transverse_inertia,
-        polar_inertia=ring.polar_inertia,
-        support_stiffness=stiffness,
-        support_damping=damping,
-        film_stiffness=linear.film_k[1, 1],
-        film_damping=linear.film_d[1, 1],
-    )
+    numbers = formula_numbers(ring, linear.film_k[1, 1], linear.film_d[1, 1]) | {"speed": _first(scene.shaft.speed, at)}
     if arrangement[1]:
         name, own = "FMR", scene.rotor.misalignment
         static, dynamic = closed_form.fmr_static(**numbers), closed_form.fmr_dynamic(**numbers)

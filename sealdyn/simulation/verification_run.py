@@ -128,19 +128,27 @@ class Comparison:
         ended.  None if nothing can be compared; `progress(t, end)` and `stop()` as in `simulate`; Enough once `stop`
         asks for it.  `work`: compiled evaluations after which the other gives up, NaN from there on; `stiff`
         as `sharper` takes it."""
-        model = self.run.model
-        # A film below its floor has a bend, of which its integrals feel more than of anything else.
-        again = self.run.anew(model.with_sharper_film(SHARPER_FILM) if model.scene.contact else None)
-        return self._apart(again, *sharper(method, tolerance, self.run, stiff), progress, stop, work)
+        method, tolerance = sharper(method, tolerance, self.run, stiff)
+        return self._apart(self._sharper_run(), method, tolerance, progress, stop, work)
 
     def change_by_halving(
         self, progress=None, stop=None, *, method: str, tolerance: float, work: float = math.inf
     ) -> np.ndarray | None:
         """How far (m,) the run with half the film's cells is from this one; None of a film that has none to halve, or
         that half of them cannot describe."""
+        again = self._halved_run()
+        return None if again is None else self._apart(again, method, tolerance, progress, stop, work)
+
+    def _sharper_run(self) -> RunState:
+        """The run once more.  A film below its floor has a bend, of which its integrals feel more than of anything
+        else."""
         model = self.run.model
-        film = model.observed[0]
-        if film.halved is None:
+        return self.run.anew(model.with_sharper_film(SHARPER_FILM) if model.scene.contact else None)
+
+    def _halved_run(self) -> RunState | None:
+        """The run with half the film's cells; None without."""
+        model = self.run.model
+        if model.observed[0].halved is None:
             return None
         try:
             coarse = Model(replace(model.scene, film=model.interface.halved()), model.accuracy, film=model.film)
@@ -149,7 +157,7 @@ class Comparison:
             return None
         again, rings = RunState(coarse, self.run.duration), model.unknowns.n_mechanical
         again.y0[:rings] = self.run.y0[:rings]
-        return self._apart(again, method, tolerance, progress, stop, work)
+        return again
 
     def _apart(self, again, method, tolerance, progress, stop, work) -> np.ndarray | None:
         """How far (m,) this run is from another one, done by `method` with `tolerance`, at each instant."""
@@ -204,17 +212,12 @@ class RadialComparison(Comparison):
         evenly = np.sort(np.mod(GOLDEN * np.arange(1, RADIAL_INSTANTS + 1), 1.0)) * run.duration
         super().__init__(run, evenly if asked is None else asked, RadialErrorScales(run.model))
 
-    def error_over_time(
-        self, progress=None, stop=None, *, method: str, tolerance: float, work: float = math.inf, stiff: bool = False
-    ) -> np.ndarray | None:
-        """How far (m,) this run is from one with sharper steps and sharper events: how long a step may be and what
-        counts as contact follow from the accuracy."""
-        again = self.run.sharper(SHARPER)
-        return self._apart(again, *sharper(method, tolerance, self.run), progress, stop, work)
+    def _sharper_run(self):
+        """With sharper steps and sharper events: how long a step may be and what counts as contact follow from the
+        accuracy."""
+        return self.run.sharper(SHARPER)
 
-    def change_by_halving(
-        self, progress=None, stop=None, *, method: str, tolerance: float, work: float = math.inf
-    ) -> None:
+    def _halved_run(self) -> None:
         """None: there is no film."""
 
     def _largest(self, errors):

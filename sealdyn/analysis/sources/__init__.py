@@ -35,6 +35,15 @@ def source_names() -> list[str]:
     return sorted(m.name.replace("_", "-") for m in pkgutil.iter_modules(__path__))
 
 
+def wanted_sources(source: str | None) -> list[str]:
+    """The name of one source ("zuk-1972", "zuk_1972"), or of all.  Raises ValueError for no such source."""
+    names = source_names()
+    wanted = names if source is None else [source.replace("_", "-")]
+    if not set(wanted) <= set(names):
+        raise ValueError(f'source: found "{source}"; expected one of {", ".join(names)}')
+    return wanted
+
+
 def source_module(name: str):
     """The source `name` (hyphenated)."""
     return importlib.import_module(f"{__name__}.{name.replace('-', '_')}")

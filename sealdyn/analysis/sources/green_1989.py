@@ -74,13 +74,18 @@ def reference_scene(arrangement: str, inertia_ratio: float = 0.5, fixed: float =
     return Scene(shaft, film, rotor=Rotor(runout=turning), stator=Stator(misalignment=fixed, **ring))
 
 
-def _responses(arrangement: str, c: float) -> dict[str, tuple[float, float, float]]:
-    """Each steady quantity by three independent methods (formula, linear algebra, time domain)."""
+def _formula_numbers(c: float) -> dict[str, float]:
+    """What the formulas are fed with."""
     seal = cf.GREEN_1989_SEAL
     film = cf.film_coefficients(
         **{k: seal[k] for k in ("inner_radius", "outer_radius", "clearance", "coning", "viscosity", "pressure_drop")}
     )
-    numbers = cf.green_1989_tilt(film.tilt_stiffness, film.tilt_damping, c)
+    return cf.green_1989_tilt(film.tilt_stiffness, film.tilt_damping, c)
+
+
+def _responses(arrangement: str, c: float) -> dict[str, tuple[float, float, float]]:
+    """Each steady quantity by three independent methods (formula, linear algebra, time domain)."""
+    numbers = _formula_numbers(c)
     formulas = (cf.fmr_static, cf.fmr_dynamic) if arrangement == "FMR" else (cf.fms_static, cf.fms_dynamic)
     unit = 1e-5
     formula = [float(f(**numbers)) for f in formulas]
@@ -95,7 +100,7 @@ def _responses(arrangement: str, c: float) -> dict[str, tuple[float, float, floa
         time_domain.append(run.extrema.records[1, 4] / unit)
     formula.append(sum(formula))
     rows = [formula, algebra, time_domain]
-    radius_ratio = seal["inner_radius"] / seal["outer_radius"]
+    radius_ratio = cf.GREEN_1989_SEAL["inner_radius"] / cf.GREEN_1989_SEAL["outer_radius"]
     # In units of C/r_o: the faces touch at 1/R; the ring's own misalignment is the FMR's turning one, the
     # FMS's critical forcing is its runout.
     for row in rows:
@@ -108,11 +113,7 @@ def _responses(arrangement: str, c: float) -> dict[str, tuple[float, float, floa
 
 
 def _critical_speeds(arrangement: str, c: float):
-    seal = cf.GREEN_1989_SEAL
-    film = cf.film_coefficients(
-        **{k: seal[k] for k in ("inner_radius", "outer_radius", "clearance", "coning", "viscosity", "pressure_drop")}
-    )
-    numbers = cf.green_1989_tilt(film.tilt_stiffness, film.tilt_damping, c)
+    numbers = _formula_numbers(c)
     numbers.pop("speed")
     formula = (cf.fmr_critical_speed if arrangement == "FMR" else cf.fms_critical_speed)(**numbers)
     run = run_over(reference_scene(arrangement, c), 1)

@@ -30,7 +30,7 @@ SOURCE = "Lebeck, Teale & Pierce (1979), Table 3-1"
 # The scene: units of length are the outer radius and the half height of the asperities.
 INNER, OUTER, HALF = 0.045, 0.05, 0.5e-6
 VISCOSITY, SPEED = 3.05e-4, 188.0
-SEALED, STRENGTH, SHEAR, BALANCE = 0.005, 0.5, 0.1, 0.75
+SEALED, BALANCE = 0.005, 0.75
 CELLS = 24, 180
 # Share of the number up to which a print agrees, or an independent computation does.
 TOLERANCE = {"load_support": 4e-3, "friction_coefficient": 2e-2, "leakage": 2e-2}
@@ -61,17 +61,26 @@ ROWS = (Row(3, 0.0, (0.690, 0.690)), Row(3, 0.60, (0.845, 0.847), (0.0178, 0.017
 
 def scene_of(row: Row, cells=CELLS) -> Scene:
     """The seal of a row, SI, with `cells` over the radius and around a wave."""
-    unit = VISCOSITY * SPEED * (OUTER / HALF) ** 2
-    options = Reynolds(cells_r=cells[0], cells_theta=cells[1] * row.order)
-    film = Film(
-        inner_radius=INNER, outer_radius=OUTER, outer_pressure=SEALED * unit, inner_pressure=0.0, viscosity=VISCOSITY,
-        cavitation_pressure=0.0, model="reynolds", reynolds=options,
-    )  # fmt: skip
+    unit = pressure_unit(HALF)
     rough = Contact(roughness=HALF / HALF_HEIGHT, compressive_strength=100.0 * SEALED * unit,
                     shear_strength=10.0 * SEALED * unit)  # fmt: skip
+    return seal(SEALED * unit, rough, Waviness(order=row.order, amplitude=row.amplitude * HALF), cells)
+
+
+def pressure_unit(height: float) -> float:
+    """Unit of pressure (Pa) where the unit of film thickness is a `height` (m)."""
+    return VISCOSITY * SPEED * (OUTER / height) ** 2
+
+
+def seal(sealed: float, contact: Contact, wave: Waviness, cells) -> Scene:
+    """The report's seal with a `sealed` pressure (Pa), asperities, and one wave of the stator."""
+    film = Film(
+        inner_radius=INNER, outer_radius=OUTER, outer_pressure=sealed, inner_pressure=0.0, viscosity=VISCOSITY,
+        cavitation_pressure=0.0, model="reynolds",
+        reynolds=Reynolds(cells_r=cells[0], cells_theta=cells[1] * wave.order),
+    )  # fmt: skip
     support = Support(axial_stiffness=0.0, radius=0.5 * (INNER + OUTER))
-    waves = [Waviness(order=row.order, amplitude=row.amplitude * HALF)]
-    return Scene(shaft=Shaft(speed=SPEED), film=film, contact=rough, stator=Stator(support=support, waviness=waves),
+    return Scene(shaft=Shaft(speed=SPEED), film=film, contact=contact, stator=Stator(support=support, waviness=[wave]),
                  closing=Closing(balance_ratio=BALANCE, spring_force=0.0))  # fmt: skip
 
 

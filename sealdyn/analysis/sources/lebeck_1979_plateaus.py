@@ -2,13 +2,10 @@
 
 import math
 
-from ...scene.excitation import Shaft
-from ...scene.film import Film, Reynolds
 from ...scene.forces import Contact
 from ...scene.patterns import Waviness
-from ...scene.rings import Stator, Support
-from ...scene.scene import Closing, Scene, SceneError
-from .lebeck_1979 import BALANCE, HALF, INNER, OUTER, SPEED, TOLERANCE, UNEXPLAINED, VISCOSITY, balance
+from ...scene.scene import Scene, SceneError
+from .lebeck_1979 import CELLS, HALF, OUTER, TOLERANCE, UNEXPLAINED, balance, pressure_unit, seal
 
 TITLE = "Lebeck, Teale & Pierce (1979), Table 2-7, wavy seal, Gaussian heights with plateaus; reynolds, 24 x 180 a wave"
 FILM = "reynolds"
@@ -20,7 +17,6 @@ SOURCE = "Lebeck, Teale & Pierce (1979), Table 2-7"
 # Units of length are the outer radius and the composite rms roughness; three waves.
 ROUGHNESS = OUTER / 3e5
 ORDER, AMPLITUDE, SEALED, STRENGTH, SHEAR = 3, 1.2, 5.55e-4, 5.55e-2, 5.55e-3
-CELLS = 24, 180
 # Of the plateaus, of the roughness: the report's are smooth, and their load jumps.
 FINISH = 0.02
 TOLERANCES = TOLERANCE | {"load_support": 1e-2, "leakage": 1e-2, "clearance": 1e-2}
@@ -38,18 +34,10 @@ FRICTION = "viscous shear over all of the film is 0.0027 by itself, more than th
 
 def scene_of(truncation: float, cells=CELLS) -> Scene:
     """The seal of a row, SI, with `cells` over the radius and around a wave."""
-    unit = VISCOSITY * SPEED * (OUTER / ROUGHNESS) ** 2
-    film = Film(
-        inner_radius=INNER, outer_radius=OUTER, outer_pressure=SEALED * unit, inner_pressure=0.0, viscosity=VISCOSITY,
-        cavitation_pressure=0.0, model="reynolds",
-        reynolds=Reynolds(cells_r=cells[0], cells_theta=cells[1] * ORDER),
-    )  # fmt: skip
+    unit = pressure_unit(ROUGHNESS)
     worn = Contact(roughness=ROUGHNESS, law="plateaus", truncation=truncation, plateau_roughness=FINISH * ROUGHNESS,
                    compressive_strength=STRENGTH * unit, shear_strength=SHEAR * unit)  # fmt: skip
-    support = Support(axial_stiffness=0.0, radius=0.5 * (INNER + OUTER))
-    waves = [Waviness(order=ORDER, amplitude=AMPLITUDE * ROUGHNESS)]
-    return Scene(shaft=Shaft(speed=SPEED), film=film, contact=worn, stator=Stator(support=support, waviness=waves),
-                 closing=Closing(balance_ratio=BALANCE, spring_force=0.0))  # fmt: skip
+    return seal(SEALED * unit, worn, Waviness(order=ORDER, amplitude=AMPLITUDE * ROUGHNESS), cells)
 
 
 def checks() -> list[dict]:

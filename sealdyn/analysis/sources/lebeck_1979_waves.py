@@ -43,10 +43,9 @@ LOST = (
 
 def ring_of(stiffness: float) -> ElasticRing:
     """The ring of a K = E J c^3/(viscosity speed r_c^3 r_o^4), with the drive of the report."""
-    pressure = base.VISCOSITY * base.SPEED * (base.OUTER / base.HALF) ** 2
     bending = stiffness * base.VISCOSITY * base.SPEED * CENTROID**3 * base.OUTER**4 / base.HALF**3
     return ElasticRing(bending_stiffness=bending, radius=CENTROID, torsion_ratio=TORSION,
-                       drive_pressure=base.SEALED * pressure, drive_length=LENGTH)  # fmt: skip
+                       drive_pressure=base.SEALED * base.pressure_unit(base.HALF), drive_length=LENGTH)  # fmt: skip
 
 
 def curve_of(order: int, nets) -> dict:
