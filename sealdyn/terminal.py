@@ -91,10 +91,9 @@ def kept_of_study(journal: Path, results: Path | None) -> str:
 class Stop(Exception):
     """Ends a verb with a status and a sentence; of a scenario with every ScenarioError, the sentence's own first."""
 
-    def __init__(self, status: str, message: str, code: int | None = None, errors=()):
+    def __init__(self, status: str, message: str, errors=()):
         super().__init__(message)
         self.status, self.message, self.errors = status, message, errors
-        self.code = EXIT[status] if code is None else code
 
 
 @contextlib.contextmanager
@@ -288,8 +287,7 @@ def carried_out(verbs):
                 os.close(out)
     except KeyboardInterrupt:
         # It came before the first thing was done, or after the last.
-        _tell_interrupted(as_json)
-        sys.exit(INTERRUPTED)
+        _end_interrupted(as_json)
 
 
 def _refuse_little_memory():
@@ -336,11 +334,10 @@ def _run(verbs, as_json: bool):
         sys.stdout.flush()
         if code == INTERRUPTED:
             # A KeyboardInterrupt comes out as this code, too.
-            _tell_interrupted(as_json)
+            _end_interrupted(as_json)
         sys.exit(code if isinstance(code, int) else DONE)
     except Stop as stop:
         _refuse(stop.status, stop.message, as_json, stop.errors)
-        sys.exit(stop.code)
     except (BrokenPipeError, SystemExit) as end:
         # Whoever read us has seen enough, of which Typer makes a 1; keep the interpreter from complaining at exit.
         if isinstance(end, SystemExit) and end.code != 1:
@@ -350,40 +347,36 @@ def _run(verbs, as_json: bool):
     except (MemoryError, ImportError) as error:
         # Libraries that find no memory cannot be loaded.
         _refuse(Status.FAILED, f"sealdyn: not enough memory, or a library that cannot be loaded ({error})", as_json)
-        sys.exit(FAILED)
     except OSError as error:
         if error.errno is None:
             _refuse(Status.FAILED, f"sealdyn: the system refuses something ({error})", as_json)
-            sys.exit(FAILED)
         # Everything else that is written has its own words.
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
         line = f"standard output: cannot be written ({error.strerror or error})"
         print(line, file=sys.stderr)
         sys.exit(FAILED)
     except KeyboardInterrupt:
-        _tell_interrupted(as_json)
-        sys.exit(INTERRUPTED)
+        _end_interrupted(as_json)
     except Exception as error:
         if interruption.asked:
             # A library that was being loaded has made another error of the KeyboardInterrupt, as pydantic does.
-            _tell_interrupted(as_json)
-            sys.exit(INTERRUPTED)
+            _end_interrupted(as_json)
         # A misused command line: the parser's own errors can say what they mean in one line.
         if not hasattr(error, "format_message"):
             raise
         _refuse(Status.INVALID, f"sealdyn: {error.format_message()}  See sealdyn --help.", as_json)
-        sys.exit(BAD_INPUT)
 
 
-def _tell_interrupted(as_json: bool):
-    """What is kept, in a line, and as JSON unless that has been printed.  Nothing is imported any more: an import that
-    was broken off would begin anew, and some libraries say so."""
+def _end_interrupted(as_json: bool):
+    """Ends with what is kept, in a line, and as JSON unless that has been printed.  Nothing is imported any more: an
+    import that was broken off would begin anew, and some libraries say so."""
     # Python ends itself with the signal, not with our code, if a text was being executed; the next one undoes that.
     exec("")
     line = f"interrupted: {left['words']()}"
     say(line, error=True)
     if as_json and not left["answered"]:
         print(json.dumps({"status": Status.INTERRUPTED, "message": line}))
+    sys.exit(INTERRUPTED)
 
 
 def _break_off(as_json: bool, out: int):
@@ -396,12 +389,16 @@ def _break_off(as_json: bool, out: int):
 
 
 def _refuse(status: str, message: str, as_json: bool, errors=()):
+    """Says why a verb does not do what was asked, and ends."""
     lines = [cut(" ".join(str(said).split()), LONGEST) for said in errors or [message]]
     if not as_json:
         say(*lines, error=True)
-        return
+        sys.exit(EXIT[status])
     told = {"status": status, "message": lines[0]}
     if errors:
-        keys = [{"key": error.key, "found": error.found, "expected": error.expected} for error in errors]
-        told["errors"] = [{"message": line, **key} for line, key in zip(lines, keys, strict=True)]
+        told["errors"] = [
+            {"message": line, "key": error.key, "found": error.found, "expected": error.expected}
+            for line, error in zip(lines, errors, strict=True)
+        ]
     print(json.dumps(told))
+    sys.exit(EXIT[status])

@@ -31,7 +31,7 @@ from ..faces.geometry import COLLAPSE, GX, GY
 from ..scene.scene import SceneError
 from ..solvers.contract import SolverFailure
 from ..solvers.own_methods import RADAU, rule
-from .shooting import CLOSED, NoOrbit, Orbit, TooMuchWork, must_be_open, periodic
+from .shooting import CLOSED, NoOrbit, Orbit, TooMuchWork, must_be_open, orbit_extremes, periodic
 
 # Harmonics of the fastest forcing to begin with; points of a period at most; share of the last harmonics that must
 # fall, each time the points are doubled, for more of them to be worth it.
@@ -248,13 +248,10 @@ class HarmonicBalance:
             return float(found.x if found.fun < sign * seen(about)[column] else about)
 
         time = least(0)
-        value, theta, radius, _ = seen(time)
-        found = {
-            "h_min": {"value": value, "time": time % self.period, "theta": theta, "radius": radius,
-                      "of_clearance": value / self.model.clearance},
-            "relative_misalignment": {"max": seen(least(3, -1.0))[3], "min": seen(least(3))[3]},
-            "collapsed": bool(value <= self.model.face[COLLAPSE]),
-        }  # fmt: skip
+        *low, _ = seen(time)
+        tilts = seen(least(3, -1.0))[3], seen(least(3))[3]
+        closed = bool(low[0] <= self.model.face[COLLAPSE])
+        found = orbit_extremes(self.model, low, time % self.period, *tilts, closed)
         if per_period:
             found["times"] = self.period * np.arange(per_period + 1) / per_period
             found["displacements"], found["rates"] = self.at(points, found["times"]), self.at(rates, found["times"])

@@ -90,6 +90,14 @@ class Orbit:
         return bool(np.max(np.abs(self.multipliers)) < 1.0)
 
 
+def orbit_extremes(model: Model, low: tuple, time: float, most: float, least: float, collapsed: bool) -> dict:
+    """As `Shooter.extremes`, of the thinnest film `low` (m, with its theta (rad) and radius (m)) at a `time` (s), and
+    the most and least relative misalignment (rad)."""
+    value, theta, radius = low
+    place = {"value": value, "time": time, "theta": theta, "radius": radius, "of_clearance": value / model.clearance}
+    return {"h_min": place, "relative_misalignment": {"max": most, "min": least}, "collapsed": collapsed}
+
+
 def must_be_open(orbit: Orbit) -> Orbit:
     """The orbit itself.  Raises NoOrbit for one of a film that is closed, which is no motion of the seal."""
     if orbit.extremes["collapsed"]:
@@ -231,18 +239,11 @@ class Shooter:
         recorder = Recorder(self.period / per_period if per_period else None)
         method = "ida" if run.model.unknowns.has_residual_form else choose_method(run)[0]
         outcome = solve(run, method, self.accuracy if accuracy is None else accuracy, recorder)
-        record = run.extrema.records[0]
-        found = {
-            "h_min": {
-                "value": float(record[H]),
-                "time": float(record[H_TAU]),
-                "theta": float(record[H_THETA]),
-                "radius": float(record[H_RADIUS]),
-                "of_clearance": float(record[H] / run.model.clearance),
-            },
-            "relative_misalignment": {"max": float(record[MOST]), "min": float(record[LEAST])},
-            "collapsed": outcome.status == Status.COLLAPSED,
-        }
+        low, theta, radius, time, most, least = map(
+            float, run.extrema.records[0, [H, H_THETA, H_RADIUS, H_TAU, MOST, LEAST]]
+        )
+        closed = outcome.status == Status.COLLAPSED
+        found = orbit_extremes(run.model, (low, theta, radius), time, most, least, closed)
         if per_period:
             found["times"], found["displacements"], found["rates"] = recorder.arrays()
         return found
@@ -324,12 +325,8 @@ class ForcedWave:
     def _orbit(self, q, residual) -> Orbit:
         y = self.state(q)
         s = self.segment.gap_state(0.0, y)
-        low, theta, radius = h_min(self.model.face, s)
-        tilt = float(np.hypot(s[GX], s[GY]))
-        least = {"value": low, "time": 0.0, "theta": theta, "radius": radius}
-        least["of_clearance"] = low / self.model.clearance
-        closed = bool(low <= self.model.face[COLLAPSE])
-        extremes = {"h_min": least, "relative_misalignment": {"max": tilt, "min": tilt}, "collapsed": closed}
+        low, tilt = h_min(self.model.face, s), float(np.hypot(s[GX], s[GY]))
+        extremes = orbit_extremes(self.model, low, 0.0, tilt, tilt, bool(low[0] <= self.model.face[COLLAPSE]))
         start, period = y[: self.model.unknowns.n_mechanical], RunState(self.model, 1.0).period()
         return Orbit(period, start, None, None, residual, 0, extremes)
 

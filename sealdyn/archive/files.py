@@ -326,10 +326,12 @@ def seal(file) -> None:
     file.attrs[SEAL] = f"{_digest(file, names)} {' '.join(names)}"
 
 
-def is_whole(file) -> bool:
-    """Whether an archive says what it said when it was sealed, whatever has been added; True of one without a seal."""
+def must_be_whole(file, path) -> None:
+    """Raises ArchiveError for an archive that says another thing than when it was sealed, whatever has been added; not
+    for one without a seal."""
     digest, *names = str(file.attrs.get(SEAL, "")).split(" ")
-    return not digest or (set(names) <= set(file.attrs) and digest == _digest(file, names))
+    if digest and not (set(names) <= set(file.attrs) and digest == _digest(file, names)):
+        raise ArchiveError(f"{path}: what it says was altered since it was written")
 
 
 def _digest(file, names) -> str:

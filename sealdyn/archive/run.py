@@ -22,9 +22,9 @@ from .files import (
     ArchiveError,
     file_identity,
     held_in_words,
-    is_whole,
     must_be_readable,
     must_be_sound,
+    must_be_whole,
     partial_path,
     root_attributes,
 )
@@ -182,8 +182,7 @@ def opened_run(path: str | os.PathLike):
             # Of the file that is open: a run that ends meanwhile gives it another name.
             record, identity = _read_record(file), file_identity(file.id.get_vfd_handle())
             if identity not in _looked_at:
-                if not is_whole(file):
-                    raise ArchiveError(f"{path}: what it says was altered since it was written")
+                must_be_whole(file, path)
                 _check(file, record)
                 _looked_at.add(identity)
             yield file, record

@@ -19,10 +19,10 @@ from .files import (
     ArchiveError,
     hdf5_with_room,
     is_named,
-    is_whole,
     mark_sound,
     must_be_readable,
     must_be_sound,
+    must_be_whole,
     root_attributes,
     seal,
 )
@@ -159,8 +159,7 @@ def read_study(path: str | os.PathLike) -> dict:
         must_be_sound(path)
         with h5py.File(path, "r") as file:
             must_be_readable(file, path, FORMAT, "a sealdyn study")
-            if not is_whole(file):
-                raise ArchiveError(f"{path}: what it says was altered since it was written")
+            must_be_whole(file, path)
             info = root_attributes(file)
             for name in ("answer", "panels"):
                 info[name] = json.loads(file[f"json/{name}"].asstr()[()])

@@ -7,6 +7,7 @@ import stat
 import tomllib
 from collections.abc import Iterable, Mapping, Set
 from dataclasses import dataclass, field
+from itertools import takewhile
 from pathlib import Path
 from types import ModuleType
 from typing import Any, Self
@@ -314,12 +315,8 @@ def _tables_of(text: str, overrides: Iterable[str] = ()) -> dict:
 
 def _question(text: str) -> str:
     """The comment block at the head of the file."""
-    lines = []
-    for line in text.lstrip("\ufeff").splitlines():
-        if not line.startswith("#"):
-            break
-        lines.append(line.lstrip("#").strip())
-    return "\n".join(lines)
+    lines = takewhile(lambda line: line.startswith("#"), text.lstrip("\ufeff").splitlines())
+    return "\n".join(line.lstrip("#").strip() for line in lines)
 
 
 def _plain(value: Any) -> Any:

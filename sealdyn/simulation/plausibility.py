@@ -54,7 +54,7 @@ def cautions(scenario, run, outcome, leakage, heat, h_min, wear=0.0) -> list[Cau
         *_roughness_leakage(model, h_min),
         *_contact_arm(scene),
         *(_heat(scene.film, *heat) if model.heat is None else ()),
-        *_wear(scenario, wear),
+        *_wear(wear),
     ]
     found += _flash(run, outcome)
     if scene.film.gas is not None:
@@ -140,7 +140,7 @@ def _units(scenario, model):
         yield Caution(Concern.UNITS, f"{apart}: is that possible?  No film seals at this distance")
 
 
-def _wear(scenario, rate):
+def _wear(rate):
     """Faces that are gone within hours."""
     if math.isfinite(rate) and rate > GONE:
         how = "is the unit of the wear coefficient right, 1/Pa or mm^3/(N*m)?"

@@ -34,6 +34,7 @@ from ..solvers.integrate import CRUMB, solve
 from ..units import QuantityError, cut, quoted
 from .run import RunEnded
 from .selection import prepare_run
+from .verification_run import ProgressSink
 
 # Motion that moves nothing: a scene that has it has all its unknowns.
 NOTHING = 1e-300
@@ -269,7 +270,7 @@ class Simulation:
 
     def _integrate(self, until: float) -> None:
         """Go on to a time (s) of the present segment."""
-        run, sink = self._run, _Kept()
+        run, sink = self._run, _Kept(self._run)
         if self._run.model.scene.shaft.motion or self._run.model.scene.housing.motion:
             with scene_errors_of(self.name):
                 check_covers(run.model.scene, run.intervals[0].time + until)
@@ -356,11 +357,12 @@ class _Stepped(RunState):
         return self._segment.until(min(self.until, self._segment.length))
 
 
-class _Kept:
+class _Kept(ProgressSink):
     """A sink of a step: what has moved where it ends (`last`: segment, displacements and rates, each (1, n), and the
     film's unknowns), and `events`."""
 
-    def __init__(self):
+    def __init__(self, run):
+        super().__init__(run)
         self.last, self.events = None, []
 
     def due(self, segment):
@@ -370,9 +372,6 @@ class _Kept:
     def take(self, segment, taus, *motion):
         """Keep the motion at the end."""
         self.last = (segment, *(part[-1:] for part in motion))
-
-    def state(self, segment, tau, y):
-        """Not kept."""
 
     def event(self, segment, tau, event):
         """Keep what happens."""

@@ -117,15 +117,9 @@ def parts(scenario, run, plan, outcome, tally, speeds: bool = True) -> dict:
         "end": {
             "time": run.end_time(outcome.segment, outcome.tau),
             "asked": run.duration,
-            "state": _state(run, outcome),
+            "state": {name: outcome.y[place] for name, place in _state_places(model.unknowns).items()},
         },
     }
-
-
-def _state(run, outcome) -> dict:
-    """Displacements and rates by name, at the end."""
-    places = _state_places(run.model.unknowns)
-    return {name: outcome.y[place] for name, place in places.items()}
 
 
 def state_names(unknowns) -> list[str]:
@@ -133,7 +127,8 @@ def state_names(unknowns) -> list[str]:
     return [*_state_places(unknowns)]
 
 
-def _state_places(unknowns) -> dict:
+def _state_places(unknowns) -> dict[str, int]:
+    """Places of displacements and rates by name."""
     rates = {f"{n}_rate": at for n, at in zip(unknowns.names, unknowns.rate_places, strict=True) if at >= 0}
     return {name: place for place, name in enumerate(unknowns.names)} | rates
 
