@@ -248,9 +248,6 @@ def _balance(seal: Seal, limit) -> Finding:
     return limit_finding(sentence, pressure, most=most, balance=balance)
 
 
-KEYS_OF_HANG_UP = ("ring", "available", "needed", "friction", "inertia", "tilting", "holds", "sure")
-
-
 def _hang_up(seal: Seal, limit) -> Finding:
     """Pass if the spring beats what the ring needs to follow the rotor; a note where one side of the face opens."""
     scene = seal.scene
@@ -261,12 +258,12 @@ def _hang_up(seal: Seal, limit) -> Finding:
     if scene.closing.spring_force is None:
         return missing_keys("closing.spring_force")
     balance = followability(seal.model)
-    numbers = {key: balance[key] for key in KEYS_OF_HANG_UP}
+    sentence = balance.pop("sentence")
     if balance["needed"] < balance["available"] <= balance["sure"]:
-        return note(balance["sentence"], balance["available"], **numbers)
+        return note(sentence, balance["available"], **balance)
     # To be equal is not enough.
     least = math.nextafter(balance["needed"], math.inf)
-    return limit_finding(balance["sentence"], balance["available"], least=least, **numbers)
+    return limit_finding(sentence, balance["available"], least=least, **balance)
 
 
 def _axial_travel(seal: Seal, limit) -> Finding:

@@ -40,21 +40,21 @@ class Follower:
         for kind in (ForcedWave, HarmonicBalance):
             try:
                 finder = kind(scene, self.accuracy)
-                return finder, self._within(finder, lambda finder=finder: finder.find(self._guess(value, finder)))
+                return finder, self._within(finder, value)
             except (NotOneSpeed, NotSmooth):
                 continue
         # A floored film has kinks and costs a hundred times more: a looser orbit is all it can give.
         tight, target = (1e-10, 1e-8) if scene.film.cavitation_pressure is None else (1e-6, 1e-5)
-        finder, before = Shooter(scene, self.accuracy, tight=tight), self.monodromy
-        orbit = self._within(finder, lambda: finder.find(self._guess(value, finder), before, target=target, most=25))
+        finder = Shooter(scene, self.accuracy, tight=tight)
+        orbit = self._within(finder, value, monodromy=self.monodromy, target=target, most=25)
         self.monodromy = orbit.monodromy
         return finder, orbit
 
-    def _within(self, finder, find):
-        """What `find()` returns, its right-hand sides counted and bounded."""
+    def _within(self, finder, value, **how):
+        """What it finds for a forcing, its right-hand sides counted and bounded."""
         finder.most_work = MOST_WORK - self.work
         try:
-            return find()
+            return finder.find(self._guess(value, finder), **how)
         except TooMuchWork:
             raise TooMuchWork(f"more than {MOST_WORK} right-hand sides for the path of orbits") from None
         finally:

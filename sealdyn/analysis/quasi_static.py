@@ -242,9 +242,9 @@ class _Balance:
         raise SolverFailure(NO_RATES)
 
 
-def _integrate(balance: _Balance, start, duration: float, accuracy: float, ended) -> tuple:
-    """Steps of IDA until `ended(films, rates)` says so, the time is over or IDA gives up (its sentence is handed
-    back); times, unknowns, rates, verdict, sentence, evaluations."""
+def _run(balance: _Balance, start, duration: float, accuracy: float, ended, sentence) -> Settling:
+    """Steps of IDA until `ended(films, rates)` gives a verdict, the time is over or IDA gives up; of the verdict, what
+    IDA says, the time (s) and the films there `sentence` makes status and message."""
     counts, y, balance.length = Counts(), np.array([*start, 0.0]), duration
     times, films, rates, verdict, said = [0.0], [y[:2]], [], "", ""
     try:
@@ -260,15 +260,11 @@ def _integrate(balance: _Balance, start, duration: float, accuracy: float, ended
     except SolverFailure as failure:
         said = str(failure)
         rates = rates or [np.full(2, np.nan)]
-    return np.array(times), np.array(films), np.array(rates), verdict, said, counts.rhs
-
-
-def _run(balance: _Balance, start, duration, accuracy, ended, sentence) -> Settling:
-    times, films, rates, verdict, said, evaluations = _integrate(balance, start, duration, accuracy, ended)
+    times, films, rates = np.array(times), np.array(films), np.array(rates)
     carried = 2 if balance.balance == "sine" else 1
     moments = [balance.wedge(film, rate)[carried] for film, rate in zip(films, rates, strict=True)]
     status, message = sentence(verdict, said, times[-1], films[-1])
-    return Settling(status, message, times, films[:, 0], films[:, 1], rates, np.array(moments), evaluations)
+    return Settling(status, message, times, films[:, 0], films[:, 1], rates, np.array(moments), counts.rhs)
 
 
 def _hung(force_ratio, edges, why, where) -> str:

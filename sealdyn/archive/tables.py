@@ -97,20 +97,17 @@ def _is_rows(held) -> bool:
 
 def _array(cells: list, words: bool = False) -> np.ndarray | None:
     """Numbers, truths or words of any rectangular list; None of another."""
-    lists = [cell for cell in cells if isinstance(cell, list)]
-    if lists:
-        parts = [None if cell is None else _array(cell, words) if isinstance(cell, list) else False for cell in cells]
-        arrays = [part for part in parts if part is not None]
-        if any(not isinstance(part, np.ndarray) for part in arrays):
-            return None
-        if any(cell is not None and part is None for cell, part in zip(cells, parts, strict=True)):
+    known = [cell for cell in cells if cell is not None]
+    if any(isinstance(cell, list) for cell in known):
+        arrays = [_array(cell, words) if isinstance(cell, list) else None for cell in known]
+        if any(part is None for part in arrays):
             return None
         kinds = {part.dtype.kind == "U" for part in arrays}
         if len({part.shape for part in arrays}) > 1 or len(kinds) > 1:
             return None
         blank = np.full(arrays[0].shape, "" if kinds == {True} else np.nan)
-        return np.array([blank if part is None else part for part in parts])
-    known = [cell for cell in cells if cell is not None]
+        held = iter(arrays)
+        return np.array([blank if cell is None else next(held) for cell in cells])
     if any(not isinstance(cell, bool | int | float | str) for cell in known):
         return None
     if any(isinstance(cell, str) for cell in known) or (words and not known):
