@@ -94,8 +94,7 @@ def mapped(scene, accuracy: float, speeds, frequencies, conings=None, clearances
     """
     axis, key, values = ("coning", "film.coning", conings) if clearances is None else ("clearances", "", clearances)
     shape = (len(speeds), len(frequencies), 1 if values is None else len(values))
-    clearance, failed = np.full(shape, None), {}
-    both = {name: np.full(shape, None) for name in ("stiffness", "damping")}
+    flat, failed = {name: np.full(shape, None) for name in ("clearance", "stiffness", "damping")}, {}
     for a, speed in enumerate(speeds):
         for c, value in enumerate([None] if values is None else values):
             there = with_values(scene, {"shaft.speed": float(speed)} | ({key: float(value)} if key and values else {}))
@@ -105,13 +104,13 @@ def mapped(scene, accuracy: float, speeds, frequencies, conings=None, clearances
                 for b, omega in enumerate(frequencies):
                     if found is None or model.interface.stores:
                         found = [part.tolist() for part in matrices(model, State(), omega=omega)]
-                    clearance[a, b, c], both["stiffness"][a, b, c], both["damping"][a, b, c] = model.clearance, *found
+                    for held, part in zip(flat.values(), (model.clearance, *found), strict=True):
+                        held[a, b, c] = part
             except (SceneError, ValueError) as error:
                 failed.setdefault(str(error), []).append({"speed": float(speed), axis: value})
     answer = {"speed": [float(w) for w in speeds], "frequency": [float(w) for w in frequencies]}
     if values is not None:
         answer[axis] = [float(v) for v in values]
-    flat = {"clearance": clearance, **both}
     for name, held in flat.items():
         nothing = None if name == "clearance" else [[None] * 3] * 3
         listed = [[[nothing if v is None else v for v in row] for row in plane] for plane in held]

@@ -29,6 +29,9 @@ from .files import (
 from .run import open_run, utf8_text
 from .tables import Variable, answer_variables, grid_variables, long_columns, tables
 
+if TYPE_CHECKING:
+    import xarray
+
 FORMAT = "sealdyn study 2"
 # How netCDF-4 calls a dimension without values, in the attribute NAME of its scale.
 NO_VALUES = "This is a netCDF dimension but not a netCDF variable.%10d"
@@ -171,10 +174,6 @@ def read_study(path: str | os.PathLike) -> dict:
     except READING_ERRORS as error:
         words = " ".join(str(error).split())[:200]
         raise ArchiveError(f"{path}: damaged ({words or type(error).__name__})") from error
-
-
-if TYPE_CHECKING:
-    import xarray
 
 
 def open_archive(path: str | os.PathLike) -> xarray.Dataset:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
-from functools import lru_cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -20,7 +19,8 @@ from .simulate import in_memory, simulate
 
 # Tables of a summary that not every run has.
 TABLES = ("heat", "contact", "secondary_seal", "leakage.conditions")
-# Scenarios and outputs whose outputs are known to be there.
+# Scene, keys and outputs of runs whose outputs are known to be there: what an optimiser asks again; at most so many.
+_known: set[tuple] = set()
 REMEMBERED = 64
 
 
@@ -40,26 +40,6 @@ class RunEnded(Exception):
 
     def __str__(self):
         return f"{self.name}: {self.status}: {self.message}"
-
-
-class _Asked:
-    """Runs of a scenario with other values at the same keys, as what is remembered of them."""
-
-    def __init__(self, scenario: Scenario, values: dict[str, Any]):
-        self.scenario, self.values = scenario, values
-        self.words = repr(scenario.scene), *values
-
-    def __eq__(self, other):
-        return self.words == other.words
-
-    def __hash__(self):
-        return hash(self.words)
-
-
-@lru_cache(maxsize=REMEMBERED)
-def _refuse_outputs(asked: _Asked, outputs: tuple[str, ...]) -> None:
-    """`refuse_outputs`, once for all that an optimiser asks."""
-    refuse_outputs(asked.scenario, [asked.values], outputs, "outputs")
 
 
 def run(
@@ -130,7 +110,12 @@ def evaluate(
     {'h_min.value': 8.2...e-06, 'status': 'ok'}
     """
     scenario, outputs = scenario_of(source), [outputs] if isinstance(outputs, str) else list(outputs)
-    _refuse_outputs(_Asked(scenario, dict(values)), tuple(outputs))
+    asked = repr(scenario.scene), tuple(values), tuple(outputs)
+    if asked not in _known:
+        refuse_outputs(scenario, [dict(values)], outputs, "outputs")
+        if len(_known) >= REMEMBERED:
+            _known.clear()
+        _known.add(asked)
     (row,) = run_many(scenario, [{"set": dict(values), "outputs": outputs}])
     if isinstance(row, Exception):
         with scene_errors_of(scenario.name):
