@@ -301,12 +301,7 @@ def certificate(
         try:
             work = max(UNBOUNDED, budget(plan.method, outcome.counts))
             how = {"method": plan.method, "tolerance": outcome.tolerance, "work": work}
-            # Decay is so fast that BDF would be chosen.
-            stiff = (
-                plan.method == "radau"
-                and not isinstance(run.model.scene, RadialScene)
-                and choose_method(run)[0] == "bdf"
-            )
+            stiff = plan.method == "radau" and _would_take_bdf(run)
             apart = seen.error_over_time(progress, stop, **how, stiff=stiff)
             cells = seen.change_by_halving(progress, stop, **how)
         except Enough:
@@ -324,6 +319,11 @@ def certificate(
     found = replace(found, said=f"{found.said}; the sharper run is {seen.dear}") if seen and seen.dear else found
     return {"asked": found.asked, "estimated": found.estimated, "solver": found.solver, "model": found.model,
             "met": found.met, "horizon": found.horizon, **beside, "said": found.said}, outcome  # fmt: skip
+
+
+def _would_take_bdf(run) -> bool:
+    """Whether decay is so fast in a run that BDF would be chosen for it."""
+    return not isinstance(run.model.scene, RadialScene) and choose_method(run)[0] == "bdf"
 
 
 # Tries in all; the share of the accuracy aimed at, and by how much a tolerance is sharpened at least and at most.
