@@ -26,6 +26,8 @@ from ..scene.scene import Scene, frozen_at_start, refuse_uneven, unforced
 SPEED_AT = equations.LEG_AT + ROTOR_SPEED
 # A solution's residual, relative to the scales of force; central-difference step of the linearisation.
 SOLVED, STEP = 1e-9, 1e-5
+# Whirls of a family, about.
+STEPS = 48
 
 
 @dataclass(frozen=True)
@@ -176,7 +178,7 @@ def least_damped(model: Model, speed: float) -> tuple[float, np.ndarray]:
     return float(frequency), q
 
 
-def branch(model: Model, threshold: float, steps: int = 48) -> list[Whirl]:
+def branch(model: Model, threshold: float) -> list[Whirl]:
     """Circular whirls from the threshold speed (rad/s) up to contact, by continuation in the amplitude.
 
     The last one has its film at the floor, unless the family ends before (a fold in the amplitude).
@@ -185,8 +187,8 @@ def branch(model: Model, threshold: float, steps: int = 48) -> list[Whirl]:
     shape, frequency, speed = wave.onset(threshold)
     floor = model.face[4]
     touching = contact_tilt_aligned(model)
-    found, amplitude, step = [], 0.0, touching / steps
-    while len(found) < 6 * steps and step > 1e-4 * touching:
+    found, amplitude, step = [], 0.0, touching / STEPS
+    while len(found) < 6 * STEPS and step > 1e-4 * touching:
         guess = _ahead(found, amplitude + step) if found else (shape * step, frequency, speed)
         whirl = wave.solve(amplitude + step, guess)
         if whirl is None:

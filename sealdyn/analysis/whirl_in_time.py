@@ -30,6 +30,9 @@ SHOWS, TOO_SLOW = 10, "too slow"
 # Where a whirl that settles starts, as a share of the tilt of contact; amplitudes that change less from piece to piece
 # have settled.
 START, STEADY = 0.02, 1e-3
+# Accuracy of runs of which the fate is asked alone, and turns after which each is left: of a bisection, of a whirl
+# that may stay, and of one that may rub.
+FATE, TIPS, STAYS, RUBS = 1e-7, 4000, 8000, 3000
 
 
 class TooLong(ValueError):
@@ -143,9 +146,7 @@ def growth_rate(scene: Scene, speed: float, turns: int, method: str, accuracy: f
     }
 
 
-def tipping_disturbance(
-    scene: Scene, speed: float, parting: float, accuracy: float = 1e-7, most_turns: int = 4000
-) -> dict:
+def tipping_disturbance(scene: Scene, speed: float, parting: float) -> dict:
     """Smallest circular whirl in the shape of the least damped mode (gap not opened) that grows to contact, by
     bisection between decay and contact; and the whirl both last runs linger at before they part.  `speed` in rad/s,
     `parting` the growth rate (1/s) with which runs leave that whirl.
@@ -162,7 +163,7 @@ def tipping_disturbance(
     low, high, runs = 0.0, 0.985 * unit, {}
 
     def tips(amplitude):
-        outcome, t, tilt, _ = tilt_in_time(scene, speed, most_turns, method, accuracy, amplitude, 0.3 * amplitude)
+        outcome, t, tilt, _ = tilt_in_time(scene, speed, TIPS, method, FATE, amplitude, 0.3 * amplitude)
         runs[amplitude] = (t, tilt)
         return outcome.status == Status.COLLAPSED
 
@@ -186,9 +187,7 @@ def tipping_disturbance(
     return {"disturbance": 0.5 * (low + high), "whirl": whirl, "frequency": frequency, "apart": float(apart[last])}
 
 
-def bounded_or_not(
-    scene: Scene, speed: float, start: str, shape, frequency, accuracy: float = 1e-7, most: int = 8000
-) -> dict:
+def bounded_or_not(scene: Scene, speed: float, start: str, shape, frequency) -> dict:
     """What becomes of a whirl at a speed (rad/s): `fate` "decays", "bounded" (with its amplitude `whirl` and `drift`,
     rad), "grows" or "contact"; the relative tilt `from` (rad) which it starts, and `turns` run (as `pace` counts them).
     TOO_SLOW: not run, as a small one with its growth `rate` (1/s) goes nowhere in these `turns`, which is `said`.
@@ -199,13 +198,13 @@ def bounded_or_not(
     unit, linear = contact_tilt_aligned(model), linear_growth(model)
     frequency_of_turns = pace(model, speed) / (2 * math.pi)
     method, whole = _method(model), int(9 / abs(linear) * frequency_of_turns) + 50
-    if method != "adams" and whole > SHOWS * most:
+    if method != "adams" and whole > SHOWS * STAYS:
         said = f"a whirl that grows or decays by {abs(linear):.2g} 1/s takes {whole:.2g} turns to go anywhere"
         return {"fate": TOO_SLOW, "from": None, "whirl": None, "turns": float(whole), "rate": linear, "said": said}
-    turns = min(most, whole)
+    turns = min(STAYS, whole)
     begin = 0.1 * unit if start == "small" else (np.array(shape), frequency)
     least = 0.03 * unit
-    outcome, t, tilt, _ = tilt_in_time(scene, speed, turns, method, accuracy, begin, least)
+    outcome, t, tilt, _ = tilt_in_time(scene, speed, turns, method, FATE, begin, least)
     size = np.abs(tilt)
     row = {"from": float(size[0]), "whirl": None, "turns": float(t[-1] * frequency_of_turns)}
     if outcome.status == Status.COLLAPSED:
@@ -218,9 +217,9 @@ def bounded_or_not(
     return {"fate": "decays" if late[-1] < late[0] else "grows", **row}
 
 
-def whirl_fate(scene: Scene, speed: float, accuracy: float = 1e-6, most: int = 3000) -> dict:
+def whirl_fate(scene: Scene, speed: float, accuracy: float = 1e-6) -> dict:
     """Fate of a small whirl at a shaft speed (rad/s): "decays", "limit cycle" (no touch), "rub", "collapse", "failed",
-    or "unsettled" after `most` turns.
+    or "unsettled" after RUBS turns.
 
     Returns `speed`, `fate` (`message` if the run ended early), `from` (rad) it starts, `first_contact` and `turns`
     (turns of the shaft), `amplitudes` (largest relative tilt of each turn, rad), and over the last turns `amplitude`
@@ -234,7 +233,7 @@ def whirl_fate(scene: Scene, speed: float, accuracy: float = 1e-6, most: int = 3
     x = wave.state(START * unit * shape, frequency)[: period_map.size]
     row = {"speed": float(speed), "fate": "unsettled", "first_contact": None, "from": START * unit}
     done, before, sizes = 0, None, []
-    while done < most:
+    while done < RUBS:
         turns = period_map.run(x, PIECE)
         x, size = turns.last, np.abs(turns.tilt)
         if len(size):
