@@ -107,7 +107,7 @@ def _simulate(scenario, out, progress, stop, resume, allow_large) -> tuple[Resul
             outcome = solve(
                 run, plan.method, run.model.accuracy, sink, audit=sink.audit, errors=sink.errors, seen=sink.seen,
                 tally=tally, resume=restart, work=plan.work / price(plan.method), points=sink.point,
-                **_solve_options(trial),
+                tolerance=trial and trial.tolerance, steps=trial and trial.steps,
             )  # fmt: skip
             found, outcome = certificate(run, plan, outcome, sink.errors, sink.seen, progress, stop)
         except KeyboardInterrupt:
@@ -152,11 +152,6 @@ def own_friction(run, outcome, tally) -> float | None:
     return factor * friction / aligned if is_another(friction, aligned) else None
 
 
-def _solve_options(trial: TrialRun | None) -> dict:
-    """What a trial asks of `solve`."""
-    return {"tolerance": trial.tolerance, "steps": trial.steps} if trial else {}
-
-
 def _completed_plan(plan: Plan, trial: TrialRun | None, outcome: Outcome) -> Plan:
     """The plan with all reasons that a run has had."""
     slow = outcome.counts.slow
@@ -176,7 +171,10 @@ def in_memory(scenario, speeds: bool = False, lowest: bool = True, again: bool =
     run, plan = prepare_run(scenario, lowest=lowest)
     sink, tally = ProgressSink(run), None if isinstance(scenario.scene, RadialScene) else Tally(run.model)
     trial, errors = first_steps(run, plan)
-    outcome = solve(run, plan.method, run.model.accuracy, sink, errors=errors, tally=tally, **_solve_options(trial))
+    outcome = solve(
+        run, plan.method, run.model.accuracy, sink, errors=errors, tally=tally,
+        tolerance=trial and trial.tolerance, steps=trial and trial.steps,
+    )  # fmt: skip
     run.contacts.tell(sink.log, end=(run.end_time(outcome.segment, outcome.tau), outcome.y))
     if not again and (friction := own_friction(run, outcome, tally)) is not None:
         return in_memory(with_values(scenario, {FRICTION: friction}), speeds, lowest, again=True)
