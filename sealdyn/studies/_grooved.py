@@ -12,11 +12,10 @@ from ..films._grooved.aligned import AlignedFilm, aligned_film, axial_stiffness
 from ..films._grooved.motion import own_tilt, relative_tilt, support_law
 from ..numerics.piecewise_linear import initially
 from ..quantities import in_words
-from ..scenario.settings import values_in_si
 from ..scene.film import coned
 from ..scene.fluid import NORMAL_PRESSURE, NORMAL_TEMPERATURE, density_of
 from ..scene.scene import SceneError, frozen_at_start
-from ._grooved_roots import MOTIONS, lands, modes, refuse_touching, rings_of
+from ._grooved_roots import lands, modes, refuse_touching, rings_of, roots_in
 
 ERRORS = ("film_force", "leakage", "torque", "axial_stiffness", "tilt_stiffness")
 # Frequencies without any asked, in shaft speeds.
@@ -44,21 +43,18 @@ def _leakage(scene, found: AlignedFilm) -> float:
     return math.copysign(1.0, film.inner_pressure - film.outer_pressure) * outwards
 
 
-def coefficients_over_grooves(scenario, scene, settings) -> Answer:
+def coefficients_over_grooves(scene, asked) -> Answer:
     """Matrices at rest (the lowest frequency) and at the shaft's, over frequency, and the roots of the ring; over
-    speeds the map of a clearance that the closing force decides follows it."""
+    speeds the map of a clearance that the closing force decides follows it.  `asked`: values (SI) of the settings
+    "frequency", "speed", "coning" and "clearance", each or None."""
     speed = initially(scene.shaft.speed)
     clearance, *_ = settle(scene, opening_law(scene))
     refuse_touching(scene, clearance)
     found = aligned_film(scene, clearance)
-    given = {
-        name: None if words is None else values_in_si(scenario, str(words), "rad/s", f"--{name}")
-        for name, words in (("frequency", settings.frequency), ("speed", settings.speed))
-    }
     for name in ("coning", "clearance"):
-        if getattr(settings, name) is not None:
+        if asked[name] is not None:
             raise SceneError(f"study.coefficients.{name}", "a value", "nothing over grooves, as yet")
-    frequencies = given["frequency"] or (max(abs(speed), 1.0) * FREQUENCIES).tolist()
+    frequencies = asked["frequency"] or (max(abs(speed), 1.0) * FREQUENCIES).tolist()
     if min(frequencies) <= 0.0:
         expected = "frequencies above 0: a film over grooves has no one damping at rest"
         raise SceneError("study.coefficients.frequency", f"{min(frequencies):g} rad/s", expected)
@@ -80,8 +76,8 @@ def coefficients_over_grooves(scenario, scene, settings) -> Answer:
         "tracking": tracking(scene, found, clearance),
     }  # fmt: skip
     numbers["mass_flow"] = numbers["leakage"] * density_of(scene.film)
-    if any(values is not None for values in given.values()):
-        numbers["map"] = _mapped(scene, given["speed"] or [speed], frequencies)
+    if any(values is not None for values in asked.values()):
+        numbers["map"] = _mapped(scene, asked["speed"] or [speed], frequencies)
     return Answer(numbers, _found(numbers), _tables(numbers), _panels(numbers), _notes(numbers))
 
 
@@ -110,9 +106,8 @@ def _errors(found: AlignedFilm, frequency: float) -> dict:
         found.of_motion(lambda motion: motion.axial_impedance(1j * frequency)),
         found.of_motion(lambda motion: motion.tilt_impedance(1j * frequency)),
     )
-    return {
-        name: float(error / abs(value)) if value else 0.0 for name, (value, error) in zip(ERRORS, pairs, strict=True)
-    }
+    shares = (float(error / abs(value)) if value else 0.0 for value, error in pairs)
+    return dict(zip(ERRORS, shares, strict=True))
 
 
 def _mapped(scene, speeds, frequencies) -> dict:
@@ -158,10 +153,8 @@ def tracking(scene, found: AlignedFilm, clearance: float) -> dict | None:
     ahead, beside = np.abs(found.of_motion(parts)[0]).T
     (by_runout, by_misalignment, by_groove), beside = ahead.tolist(), float(beside.sum())
     film, largest = coned(scene), by_runout + by_misalignment + by_groove + beside
-    wide = film.outer_radius - film.inner_radius
-    thinnest = clearance + min(
-        -largest * film.inner_radius, initially(film.coning) * wide - largest * film.outer_radius
-    )
+    rise = initially(film.coning) * (film.outer_radius - film.inner_radius)
+    thinnest = clearance + min(-largest * film.inner_radius, rise - largest * film.outer_radius)
     return {"by_runout": by_runout, "by_misalignment": by_misalignment, "by_groove": by_groove, "at_twice": beside,
             "largest": largest, "h_min": thinnest if thinnest > 0.0 else None}  # fmt: skip
 
@@ -221,8 +214,8 @@ def _tables(numbers) -> list[Table]:
             for w, k, d in zip(swept["frequency"], swept["stiffness"], swept["damping"], strict=True)]  # fmt: skip
     found.append(Table("matrices", columns, rows))
     if numbers["modes"] is not None:
-        roots = [(name, root) for name, root in numbers["modes"].items() if name.startswith(MOTIONS)]
-        rows = [[name.replace("_", " "), *(root or (None, None))] for name, root in roots]
+        roots = roots_in(numbers["modes"])
+        rows = [[name.replace("_", " "), *(root or (None, None))] for name, root in roots.items()]
         found.append(Table("roots", [("1", "motion"), ("1/s", "growth rate"), ("frequency", "whirl")], rows))
     return found
 

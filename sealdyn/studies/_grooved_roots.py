@@ -228,8 +228,7 @@ class RootsOverSpeed:
         many roots of film and rings are `growing`, counted."""
         _, clearance, film = self.film(speed)
         found = modes(frozen_at_start(self.scene, speed=speed), film)
-        roots = {name: root for name, root in found.items() if name.startswith(MOTIONS)}
-        return {"clearance": clearance, "growing": found["unstable"], **roots}
+        return {"clearance": clearance, "growing": found["unstable"], **roots_in(found)}
 
     def prepare(self) -> None:
         """Know the film at the scene's own speed, if there is one."""
@@ -239,8 +238,7 @@ class RootsOverSpeed:
 
     def growing(self, speed: float) -> int:
         """How many roots grow at a speed (rad/s)."""
-        rings = rings_of(frozen_at_start(self.scene, speed=speed))
-        return growing_roots(self.film(speed)[2].motions[1], rings)["unstable"]
+        return growing_roots(self.film(speed)[2].motions[1], self._rings(speed))["unstable"]
 
     def growth(self, speed: float) -> float:
         """Growth rate (1/s) of the least damped tilt, as `growth_of`."""
@@ -248,8 +246,10 @@ class RootsOverSpeed:
 
     def _tilt_rate(self, speed: float) -> float:
         """Of roots that are known, without the count."""
-        rings = rings_of(frozen_at_start(self.scene, speed=speed))
-        return growth_of({**_roots_of(self.film(speed)[2], rings), "growing": 0})
+        return growth_of({**_roots_of(self.film(speed)[2], self._rings(speed)), "growing": 0})
+
+    def _rings(self, speed: float) -> tuple[Ring, ...]:
+        return rings_of(frozen_at_start(self.scene, speed=speed))
 
     def threshold(self, low: float, high: float) -> float:
         """The speed (rad/s) between two of which one has more roots that grow."""
@@ -261,6 +261,11 @@ class RootsOverSpeed:
             middle = 0.5 * (low + high)
             low, high = (middle, high) if self.growing(middle) == before else (low, middle)
         return 0.5 * (low + high)
+
+
+def roots_in(row) -> dict:
+    """The roots among what `modes` or a row of RootsOverSpeed has, by their names."""
+    return {name: root for name, root in row.items() if name.startswith(MOTIONS)}
 
 
 def growth_of(row, motion: str | tuple[str, ...] = "tilt") -> float:
@@ -284,12 +289,9 @@ def roots_over_speed(scene, speeds, tools) -> tuple[list[dict], dict, list[str]]
     if between:
         held = sorted([*held, *_rows(roots, np.concatenate(between), tools, "closer")], key=lambda row: row["speed"])
     if not held:
-        raise SceneError(
-            "shaft.speed", f"no film over grooves from {speeds[0]:g} to {speeds[-1]:g} rad/s", "other speeds"
-        )
-    names = [name for name in held[0] if name.startswith(MOTIONS)]
-    known = {name: [row[name] for row in held] for name in names}
-    notes = []
+        found = f"no film over grooves from {speeds[0]:g} to {speeds[-1]:g} rad/s"
+        raise SceneError("shaft.speed", found, "other speeds")
+    known, notes = {name: [row[name] for row in held] for name in roots_in(held[0])}, []
     lost = [name.replace("_", " ") for name, values in known.items() if None in values]
     if lost:
         notes.append(f"Not an oscillation of its own at all speeds, and left out: {', '.join(lost)}.")
@@ -335,8 +337,8 @@ def growth_rates(scenes) -> list[tuple[float, float]]:
         if key not in films:
             films[key] = _settled_film(scene)
         ring = modes(scene, films[key]) if films[key] is not None else None
-        row = None if ring is None else {**ring, "growing": ring["unstable"]}
-        found.append((math.nan, math.nan) if row is None else (growth_of(row, MOTIONS), growth_of(row)))
+        row = ring and {**ring, "growing": ring["unstable"]}
+        found.append((growth_of(row, MOTIONS), growth_of(row)) if row else (math.nan, math.nan))
     return found
 
 
@@ -351,12 +353,12 @@ def _settled_film(scene) -> AlignedFilm | None:
 
 def margins_over_grooves(scene, tools) -> dict:
     """The margins of the study stability at a scene's own values."""
-    around = RootsOverSpeed(scene)
-    row, ends = around(initially(scene.shaft.speed)), thresholds(around, tools)[1]
-    roots = {name: root for name, root in row.items() if name.startswith(MOTIONS) and root}
-    least = max(roots, key=lambda name: roots[name][0], default=None)
-    tilt = max((name for name in roots if name.startswith("tilt")), key=lambda name: roots[name][0], default=None)
-    speed, critical = initially(scene.shaft.speed), min(ends, default=None)
+    around, speed = RootsOverSpeed(scene), initially(scene.shaft.speed)
+    row, critical = around(speed), min(thresholds(around, tools)[1], default=None)
+    roots = {name: root for name, root in roots_in(row).items() if root}
+    falling = sorted(roots, key=lambda name: -roots[name][0])
+    least = next(iter(falling), None)
+    tilt = next((name for name in falling if name.startswith("tilt")), None)
     return {
         "verdict": "unstable" if row["growing"] else "stable",
         "growth_rate": roots[least][0] if least else None,

@@ -75,8 +75,7 @@ def run(scenario, settings, tools) -> Answer:
     values, shapes = follow(pencil, speeds, tools.say, begin.reach)
     values = sharpened(values, [model.linear_scene(speed=float(w)).modes() for w in speeds])
     tools.say(1.0)
-    count = len(begin.mass)
-    modes = described(values, shapes[:, :, :count], speeds)
+    modes = described(values, shapes[:, :, : len(begin.mass)])
     lost = model.unknowns.faces_tilt and begin.rest is None
     notes = ["The modes are of aligned faces: no tilt was found in which the rings rest."] if lost else []
     return _answer(scene, settings, speeds, modes, notes)
@@ -94,25 +93,23 @@ def _over_grooves(scene, settings, tools) -> Answer:
     rows, roots, notes = roots_over_speed(scene, speeds, tools)
     modes = [_mode(name.partition("_")[0], row) for name, row in roots.items()]
     more = {name: [row[name] for row in rows] for name in ("clearance", "growing")}
-    return _answer(scene, settings, np.array([row["speed"] for row in rows]), modes, notes, more)
+    return _answer(scene, settings, np.array([row["speed"] for row in rows]), modes, notes, **more)
 
 
-def _answer(scene, settings, speeds, modes, notes, rest=None) -> Answer:
-    """What `modes` (described) over `speeds` say; `rest` of the numbers."""
-    own, more = abs(scene.shaft.speed), settings.lines
-    more = [more] if isinstance(more, int | float) else list(more)
-    lines = sorted({1.0, 0.5, *map(float, more)}, reverse=True)
+def _answer(scene, settings, speeds, modes, notes, **more) -> Answer:
+    """What `modes` (described) over `speeds` say, with `more` numbers."""
+    lines = sorted({1.0, 0.5, *np.array(settings.lines, float).ravel().tolist()}, reverse=True)
     numbers = {
         "speed": speeds.tolist(),
         "unit": settings.unit,
-        "own_speed": own,
+        "own_speed": abs(scene.shaft.speed),
         "lines": lines,
         "modes": modes,
         "crossings": crossings(modes, speeds, lines),
         "thresholds": thresholds(modes, speeds),
         "stator_speed": scene.stator.speed,
         "stator_crossings": stator_crossings(modes, speeds, scene.stator.speed),
-        **(rest or {}),
+        **more,
     }
     with reading_in({"rad/s": settings.unit}):
         return Answer(numbers, _found(numbers), [_table(numbers)], _panels(numbers), notes)
@@ -178,7 +175,7 @@ def _match(here, there) -> tuple[np.ndarray, float]:
     return order, float(np.min(overlap[rows, order]))
 
 
-def described(values, shapes, speeds) -> list[dict]:
+def described(values, shapes) -> list[dict]:
     """Modes as the answer has them, from all eigenvalues (each twice, with its conjugate).
 
     Of a tilt pair the member that turns as x + i y is kept: its frequency is signed, positive forward.  Two that are
@@ -268,14 +265,12 @@ def _zeros(speeds, values) -> list[float]:
 
 def crossings(modes, speeds, lines) -> list[dict]:
     """Shaft speeds (rad/s) where a forward tilt mode (or an axial one) meets an order line."""
-    found = []
-    for number, mode in enumerate(modes, 1):
-        signed = np.array(mode["signed_frequency"])
-        for order in lines:
-            for speed in _zeros(speeds, signed - order * np.asarray(speeds)):
-                at = order * speed
-                found.append({"line": order, "mode": number, "speed": speed, "frequency": at})
-    return found
+    return [
+        {"line": order, "mode": number, "speed": speed, "frequency": order * speed}
+        for number, mode in enumerate(modes, 1)
+        for order in lines
+        for speed in _zeros(speeds, np.array(mode["signed_frequency"]) - order * speeds)
+    ]
 
 
 def stator_crossings(modes, speeds, stator_speed) -> list[dict]:
@@ -322,7 +317,7 @@ def _found(numbers) -> str:
 
 def _table(numbers) -> Table:
     """A row a mode: what it is, and the speeds at which something happens to it."""
-    lines = sorted(numbers["lines"], reverse=True)
+    lines = numbers["lines"]
     columns = [("1", "mode"), ("1", "kind"), ("1", "whirl"), ("speed", "frequency from"), ("speed", "to")]
     columns += [("speed", f"meets {line:g}x") for line in lines]
     columns += [("speed", "damping changes"), ("1", "whirl ratio"), ("speed", "whirl turns round")]
@@ -373,11 +368,12 @@ def _panels(numbers) -> list[Panel]:
         frequencies.append(Series("marks", *at, label="meets an order line", style="black open circle front"))
     turns = [point["speed"] for point in numbers["thresholds"] if point["what"] == "damping"]
     levels = [Level(at, "", upright=True, style="bad dashed", number=True) for at in turns]
-    own = [Level(numbers["own_speed"], "this scenario", upright=True, style="black dotted")]
-    own = own if speed[0] < numbers["own_speed"] < speed[-1] else []
+    own = []
+    if speed[0] < numbers["own_speed"] < speed[-1]:
+        own = [Level(numbers["own_speed"], "this scenario", upright=True, style="black dotted")]
     over = Axis("speed", low=speed[0], high=speed[-1])
-    width = max(0.02, min((abs(v) for one in decrements for v in one.y if v), default=1.0))
-    sizes = [abs(v) for one in decrements for v in one.y if v is not None]
+    sizes = [abs(v) for one in decrements for v in one.y if v]
+    width = max(0.02, min(sizes, default=1.0))
     scale = Axis("log_decrement", scale="asinh" if max(sizes, default=0.0) > 30 * width else "linear", width=width)
     zero = [Level(0.0, "stable above", style="black")]
     return [

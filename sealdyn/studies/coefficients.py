@@ -29,6 +29,9 @@ DAMPING_UNITS = [[u.replace("/m", "*s/m").replace("/rad", "*s/rad") if "/" in u 
 AXES = ("speed", "frequency", "coning", "clearances")
 # Rows and columns of a matrix.
 ELEMENTS, FORCES = ("force", "motion"), ("force", "moment_x", "moment_y")
+# What the answer says of them.
+LABELS = {"order": list(ORDER), "motion": list(ORDER), "force": list(FORCES)}
+UNITS = {"stiffness_units": STIFFNESS_UNITS, "damping_units": DAMPING_UNITS}
 INFO = Info(
     timed=("fmr_reference", 2),
     asks="How stiff is the film, and how does it damp?",
@@ -103,49 +106,34 @@ class Settings:
 def run(scenario, settings, tools) -> Answer:
     """Matrices aligned and tilted, and sweeps."""
     scene = frozen_at_start(scenario.scene)
+    units = {"frequency": "rad/s", "speed": "rad/s", "coning": "rad", "clearance": "m"}
+    asked = {name: getattr(settings, name) for name in units}
+    asked |= {name: values_in_si(scenario, str(given), units[name], f"--{name}") for name, given in asked.items()
+              if given is not None}  # fmt: skip
     if grooves_of(scene)[1]:
         from ._grooved import coefficients_over_grooves
 
-        answer = coefficients_over_grooves(scenario, scene, settings)
-        names = {
-            "order": list(ORDER),
-            "motion": list(ORDER),
-            "force": list(FORCES),
-            "stiffness_units": STIFFNESS_UNITS,
-            "damping_units": DAMPING_UNITS,
-        }
+        answer = coefficients_over_grooves(scene, asked)
         table = {"table": columns_of(answer.numbers["map"])} if "map" in answer.numbers else {}
-        return replace(answer, numbers=answer.numbers | names | table)
+        return replace(answer, numbers=answer.numbers | LABELS | UNITS | table)
+    if asked["coning"] is not None and asked["clearance"] is not None:
+        raise ScenarioError(scenario.name, "study.coefficients.clearance", "conings and clearances", "one of them")
     model, speed = Model(scene, ACCURACY), scene.shaft.speed
     tilted = model if model.unknowns.with_tilt else Model(tilting(scene), ACCURACY)
     numbers = {
-        "order": list(ORDER),
-        "motion": list(ORDER),
-        "force": list(FORCES),
+        **LABELS,
         "film": model.interface.name,
         **_listed(matrices(model, State())),
-        "stiffness_units": STIFFNESS_UNITS,
-        "damping_units": DAMPING_UNITS,
+        **UNITS,
         "at": _at(model, State(), speed),
         "stator_speed": scene.stator.speed,
         "asperities": scene.contact is not None,
         "tilted": _tilted(tilted if settings.tilt else model, settings, speed),
         "against_speed": _against_speed(model, settings, speed),
-        "against_clearance": _against_clearance(scene, model, settings),
+        "against_clearance": _against_clearance(model, settings),
         "against_tilt": _against_tilt(tilted, settings),
     }
-    asked = {
-        name: None if given is None else values_in_si(scenario, str(given), unit, f"--{name}")
-        for name, given, unit in (
-            ("frequency", settings.frequency, "rad/s"),
-            ("speed", settings.speed, "rad/s"),
-            ("coning", settings.coning, "rad"),
-            ("clearance", settings.clearance, "m"),
-        )
-    }
     motion = asked["frequency"]
-    if asked["coning"] is not None and asked["clearance"] is not None:
-        raise ScenarioError(scenario.name, "study.coefficients.clearance", "conings and clearances", "one of them")
     if model.interface.stores:
         numbers["against_frequency"] = against_frequency(model, settings, speed, motion)
         numbers["synchronous"] = _listed(matrices(model, State(), omega=abs(speed))) if speed else None
@@ -193,9 +181,7 @@ def _columns(name, values, rows) -> dict:
     """Matrices over a sweep; a point that cannot be is None."""
     return {
         name: [float(v) for v in values],
-        "stiffness": [row.get("stiffness") for row in rows],
-        "damping": [row.get("damping") for row in rows],
-        "failed": [row.get("failed") for row in rows],
+        **{key: [row.get(key) for row in rows] for key in ("stiffness", "damping", "failed")},
     }
 
 
@@ -216,15 +202,14 @@ def against_frequency(model, settings, speed, motion=None) -> dict:
     return _columns("frequency", motion, [_listed(matrices(model, State(), omega=w)) for w in motion])
 
 
-def _against_clearance(scene, model, settings) -> dict:
+def _against_clearance(model, settings) -> dict:
     low = settings.clearance_from or 0.3 * model.clearance
     high = settings.clearance_to or 3 * model.clearance
     clearances, rows = np.geomspace(low, high, max(2, settings.points)), []
     for clearance in clearances:
         try:
-            rows.append(
-                _listed(matrices(Model(frozen_at_start(model.scene, clearance=float(clearance)), ACCURACY), State()))
-            )
+            other = Model(frozen_at_start(model.scene, clearance=float(clearance)), ACCURACY)
+            rows.append(_listed(matrices(other, State())))
         except (SceneError, ValueError) as error:
             rows.append({"failed": str(error)})
     return _columns("clearance", clearances, rows)
@@ -303,9 +288,8 @@ def _tables(numbers) -> list[Table]:
                ("clearance", "axial opening"), ("h_min", "thinnest film"), ("speed", "speed")]  # fmt: skip
     names = ("clearance", "tilt_x", "tilt_y", "axial_opening", "h_min", "speed")
     found = [Table("states", columns, [[name, *(where[n] for n in names)] for name, _, where in states])]
-    columns = [("1", "state"), ("1", "on")] + [
-        ("1", f"{letter} {name}") for letter in "KD" for name in ("dz", "x", "y")
-    ]
+    heads = ["state", "on", *(f"{letter} {name}" for letter in "KD" for name in ("dz", "x", "y"))]
+    columns = [("1", head) for head in heads]
     rows = [
         [name.split(":")[0] if i == 0 else "", on, *_row(held["stiffness"], i), *_row(held["damping"], i)]
         for name, held, _ in states
@@ -313,8 +297,7 @@ def _tables(numbers) -> list[Table]:
     ]
     found.append(Table("matrices", columns, rows))
     if "map" in numbers:
-        grid = columns_of(numbers["map"])
-        grid["clearance"] = np.array(numbers["map"]["clearance"], dtype=object).ravel().tolist()
+        grid = numbers["table"] | {"clearance": np.ravel(np.array(numbers["map"]["clearance"], object)).tolist()}
         heads = {
             "coning": ("rad", "coning"), "speed": ("speed", "speed"), "frequency": ("frequency", "frequency"),
             "clearance": ("clearance", "clearance"), "k_axial_axial": ("axial_stiffness", "axial k"),
@@ -371,14 +354,9 @@ def _panels(numbers) -> list[Panel]:
         axial = Series("line", x, _element(sweep, "stiffness", 0, 0), label="axial stiffness" if k == 0 else "",
                        style="grey", right=damps)  # fmt: skip
         right = _from_zero(Axis("axial_stiffness"), axial.y, 1.05)
-        below = (
-            [
-                Series("line", x, _element(sweep, "damping", i, i), label=name if k == 0 else "", style=style)
-                for name, i, style in (("Dxx", 1, "fourth"), ("Dyy", 2, "fourth dashed"))
-            ]
-            if damps
-            else []
-        )
+        drawn = (("Dxx", 1, "fourth"), ("Dyy", 2, "fourth dashed")) if damps else ()
+        below = [Series("line", x, _element(sweep, "damping", i, i), label=name if k == 0 else "", style=style)
+                 for name, i, style in drawn]  # fmt: skip
         values = [v for one in below for v in one.y if v is not None]
         log = axis.quantity == "clearance" and min(values, default=0.0) > 0.0
         left = Axis("tilt_damping", scale="log") if log else _from_zero(Axis("tilt_damping"), values, 1.3)
@@ -418,9 +396,8 @@ def _map_panels(found) -> list[Panel]:
             words = [in_words(quantities[n], found[n][j]) for n, j in at.items() if len(found[n]) > 1]
             style = ("thick", "", "thin")[min(nth, 2)] + " circle small" * (len(found[along]) < 3)
             label = ", ".join(words) or "scene's speed, slow motion"
-            series.append(
-                Series("line", found[along], values[index].tolist(), label=label if k == 0 else "", style=style)
-            )
+            line = values[index].tolist()
+            series.append(Series("line", found[along], line, label=label if k == 0 else "", style=style))
         panels.append(Panel(title, axis, Axis(quantity, " "), series, first=k == 0))
     return panels
 

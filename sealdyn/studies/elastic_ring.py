@@ -76,8 +76,9 @@ def run(scenario, settings, tools) -> Answer:
     high = settings.net_to if settings.net_to is not None else LARGEST * initial
     if not 0.0 < low < high:
         raise SceneError("study.elastic_ring.net_to", f"{high:g} m", f"more than net_from = {low:g} m > 0")
-    # The same cells for all: those of a wave as high as the film is thick.
-    scene = with_cells_of(scene, _middle(scene, low, high))
+    # The same cells for all: those of a wave as high as the film is thick, which is as thick as the faces are rough.
+    rough = scene.contact.roughness if scene.contact else (low * high) ** 0.5
+    scene = with_cells_of(scene, min(max(rough, low), high))
     nets = [float(net) for net in np.geomspace(low, high, max(3, settings.points))]
     rows = tools.map(partial(_point, scene), nets, "wavinesses")
     along = [OperatingPoint(**row) for row in rows if "failed" not in row]
@@ -93,12 +94,6 @@ def run(scenario, settings, tools) -> Answer:
         "points": points,
     }
     return Answer(answer, _found(answer), [_table(answer)], _panels(answer), _notes(answer))
-
-
-def _middle(scene, low, high) -> float:
-    """A waviness (m) of the size of the asperities, or within the range."""
-    rough = scene.contact.roughness if scene.contact else (low * high) ** 0.5
-    return min(max(rough, low), high)
 
 
 def _point(scene, net) -> dict:

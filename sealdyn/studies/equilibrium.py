@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..answers import Answer, Axis, Level, Panel, Series, Table
+from ..answers import Answer, Axis, Level, Panel, Series, Table, table_of
 from ..dynamics.equilibrium import (
     ROUNDING,
     ClosingForce,
@@ -74,18 +74,15 @@ class Settings:
 @dataclass(frozen=True)
 class Found:
     """What holds a scene: its closing-force `law` and the sentence on it, the `opening` forces of its film and
-    asperities (interface.opening_parts), pressures (Pa) at the inner and the outer radius, every root (equilibria)."""
+    asperities (interface.opening_parts), pressures (Pa) at the inner and the outer radius, the `closing` force (N),
+    every root (equilibria)."""
 
     law: ClosingForce
     said: str
     opening: Callable
     pressures: tuple[float, float]
+    closing: float
     roots: list
-
-    @property
-    def closing(self) -> float:
-        """The closing force (N)."""
-        return float(self.law.at(*self.pressures, initially(self.law.spring)))
 
 
 def find(scene) -> Found:
@@ -97,8 +94,9 @@ def find(scene) -> Found:
         return sum(parts(clearance, inner, outer))
 
     law, said = closing_law(scene, opening)
-    found = Found(law, said, parts, pressures, [])
-    return replace(found, roots=equilibria(film, opening, found.closing, *pressures, waves_of(scene), scene.contact))
+    closing = float(law.at(*pressures, initially(law.spring)))
+    roots = equilibria(film, opening, closing, *pressures, waves_of(scene), scene.contact)
+    return Found(law, said, parts, pressures, closing, roots)
 
 
 def run(scenario, settings, tools) -> Answer:
@@ -106,10 +104,10 @@ def run(scenario, settings, tools) -> Answer:
     given = frozen_at_start(scenario.scene)
     warm = warming(given) if given.film.heat is not None else None
     scene = resting(given) if warm is None else _as_warm(warm)
-    found, film, surfaces = find(scene), coned(scene), (waves_of(scene), scene.contact)
+    found, film, surfaces, friction = find(scene), coned(scene), (waves_of(scene), scene.contact), breakaway(scene)
     low, high = _range(film, surfaces, found.roots, settings)
     rows = _warm_rows(given, warm) if warm is not None else [
-        root_row(scene, root, found, breakaway(scene)) for root in found.roots if low <= root.clearance <= high
+        root_row(scene, root, found, friction) for root in found.roots if low <= root.clearance <= high
     ]  # fmt: skip
     clearance = np.geomspace(low, high, max(3, settings.points))
     carried = np.array([found.opening(c, *found.pressures) for c in clearance])
@@ -120,15 +118,14 @@ def run(scenario, settings, tools) -> Answer:
         film_stiffness(lambda *at: sum(found.opening(*at)), c, *found.pressures, step)
         for c, step in zip(clearance, steps, strict=True)
     ])  # fmt: skip
-    support = support_stiffness(scene)
     numbers = {
         "roots": rows,
         "closing_force": found.closing,
         "balance_ratio": float(found.law.balance_ratio),
         "spring_force": float(initially(found.law.spring)),
         "closing_said": found.said if warm is None else warm.said,
-        "support_stiffness": support,
-        "friction": breakaway(scene),
+        "support_stiffness": support_stiffness(scene),
+        "friction": friction,
         "range": [float(low), float(high)],
         "curve": {
             "clearance": clearance.tolist(),
@@ -287,28 +284,27 @@ def _found(numbers) -> str:
 
 def _tables(numbers) -> list[Table]:
     """Every clearance of balance, and what closes the faces."""
-    names = (
+    columns = [
         ("clearance", "clearance", "clearance"), ("1", "stable", "stable"),
         ("axial_stiffness", "stiffness", "stiffness"), ("force", "by the film", "film_force"),
         ("force", "by contact", "contact_force"), ("share", "load support", "load_support"),
         ("1", "friction coefficient", "friction_coefficient"), ("leakage", "leakage", "leakage"),
         ("cavitated_fraction", "cavity", "cavitated_fraction"), ("wear_rate", "wear of both faces", "wear_rate"),
-    )  # fmt: skip
-    columns, rows = [name[:2] for name in names], [[root.get(key) for *_, key in names] for root in numbers["roots"]]
-    if any("stator_wear" in root for root in numbers["roots"]):
-        columns += [("wear_rate", "of crests, standing"), ("wear_rate", "travelling")]
-        worn = [root.get("stator_wear", {}) for root in numbers["roots"]]
-        rows = [[*row, one.get("standing"), one.get("travelling")] for row, one in zip(rows, worn, strict=True)]
-    if any("heat" in root for root in numbers["roots"]):
-        columns += [("temperature", "rise"), ("tilt", "coning"), ("power", "heat"), ("1", "loop gain")]
-        keys = ("rise", "coning", "power", "loop_gain")
-        rows = [[*row, *(root["heat"][k] for k in keys)] for row, root in zip(rows, numbers["roots"], strict=True)]
-    if any("held" in root for root in numbers["roots"]):
-        columns += [("clearance", "held by friction from"), ("clearance", "to")]
-        rows = [[*row, *root.get("held", (None, None))] for row, root in zip(rows, numbers["roots"], strict=True)]
+    ]  # fmt: skip
+    roots, rows = numbers["roots"], []
+    for root in roots:
+        low, high = root.get("held", (None, None))
+        rows.append(root.get("heat", {}) | root.get("stator_wear", {}) | root | {"held_from": low, "held_to": high})
+    if any("stator_wear" in root for root in roots):
+        columns += [("wear_rate", "of crests, standing", "standing"), ("wear_rate", "travelling", "travelling")]
+    if any("heat" in root for root in roots):
+        columns += [("temperature", "rise", "rise"), ("tilt", "coning", "coning"), ("power", "heat", "power"),
+                    ("1", "loop gain", "loop_gain")]  # fmt: skip
+    if any("held" in root for root in roots):
+        columns += [("clearance", "held by friction from", "held_from"), ("clearance", "to", "held_to")]
     closing = [[numbers[key] for key in ("closing_force", "balance_ratio", "spring_force", "support_stiffness")]]
     named = [("force", "closing force"), ("1", "balance ratio"), ("force", "spring"), ("axial_stiffness", "support")]
-    return [Table("equilibria", columns, rows), Table("closing", named, closing)]
+    return [table_of("equilibria", columns, rows), Table("closing", named, closing)]
 
 
 def _notes(numbers, scene) -> list[str]:
@@ -322,14 +318,12 @@ def _notes(numbers, scene) -> list[str]:
     if not roots:
         least, most = (in_words("force", end(numbers["curve"]["opening_force"])) for end in (min, max))
         notes.append(f"The film carries {least} to {most} there.")
-    if any(not root["stable"] and not root.get("heat", {}).get("hunting_period") for root in roots):
+    unstable = [root for root in roots if not root["stable"]]
+    if any(not root.get("heat", {}).get("hunting_period") for root in unstable):
         notes.append("From an unstable clearance the faces close, or open to a stable one.")
-    if any(
-        not root["stable"] and "heat" not in root and root["stiffness"] + numbers["support_stiffness"] > 0
-        for root in roots
-    ):
+    if any("heat" not in root and root["stiffness"] + numbers["support_stiffness"] > 0 for root in unstable):
         notes.append("The support's stiffness would hold an unstable one.")
-    if sum(root["stable"] for root in roots) > 1:
+    if len(roots) - len(unstable) > 1:
         notes.append("Several stable clearances: the start of a run decides which one the seal takes.")
     if wears and any("wear_rate" in root for root in roots):
         notes.append(f"Wear of the {' and the '.join(wears)}; of waves that travel by whole waves it is even.")
@@ -350,29 +344,30 @@ def _panels(numbers) -> list[Panel]:
     if rough.any():
         forces.append(Series("line", clearance, rough, label="of it asperities", style="contact dotted"))
     stiff = [Series("line", clearance, np.array(curve["stiffness"]), style="film")]
-    for stable, style in ((True, "good circle large front"), (False, "bad cross large front")):
-        at = [root["clearance"] for root in roots if root["stable"] == stable]
+    for label, style, own in _by_stability(roots):
+        at = [root["clearance"] for root in own]
         names = [in_words("clearance", c) for c in at]
-        label = "stable" if stable else "unstable"
         forces.append(Series("marks", at, [closing] * len(at), label=label, style=style, names=names))
-        stiff.append(
-            Series("marks", at, [root["stiffness"] for root in roots if root["stable"] == stable], style=style)
-        )
-    held = max((root["stiffness"] for root in roots), default=0.0)
-    ends = (
-        {"low": min(min(curve["stiffness"]), 0.0) - 0.1 * held, "high": SHOWN * held}
-        if rough.any() and held > 0
-        else {}
-    )
+        stiff.append(Series("marks", at, [root["stiffness"] for root in own], style=style))
+    held, ends = max((root["stiffness"] for root in roots), default=0.0), {}
+    if rough.any() and held > 0:
+        ends = {"low": min(min(curve["stiffness"]), 0.0) - 0.1 * held, "high": SHOWN * held}
     level = Level(closing, "closing force", style="theory dashed", number=True)
     force = Axis("force", "axial force", low=lowest - 0.08 * span, high=max(most, closing) + 0.18 * span)
     balance = [_heat_panel(numbers)] if numbers.get("balance", {}).get("rise") else []
     return [
-        Panel("Opening and closing force", over, force, [one for one in forces if len(one.x)], [level], tall=1.4),
-        Panel("Axial stiffness (negative: the gap runs away)", over, Axis("axial_stiffness", **ends),
-              [one for one in stiff if len(one.x)], [Level(0.0, style="black")], below=True),
+        Panel("Opening and closing force", over, force, forces, [level], tall=1.4),
+        Panel("Axial stiffness (negative: the gap runs away)", over, Axis("axial_stiffness", **ends), stiff,
+              [Level(0.0, style="black")], below=True),
         *balance,
     ]  # fmt: skip
+
+
+def _by_stability(roots) -> list[tuple[str, str, list]]:
+    """Label, style and members of the stable roots and of the unstable ones, as far as there are any."""
+    kinds = ((True, "stable", "good circle large front"), (False, "unstable", "bad cross large front"))
+    found = [(label, style, [root for root in roots if root["stable"] == stable]) for stable, label, style in kinds]
+    return [kind for kind in found if kind[2]]
 
 
 def _heat_panel(numbers) -> Panel:
@@ -382,12 +377,10 @@ def _heat_panel(numbers) -> Panel:
     upto = sum(rise <= shown for rise in balance["rise"]) + 1
     rise, made, left = (balance[key][:upto] for key in ("rise", "power", "carried"))
     lines = [Series("line", rise, made, label="made", style="film thick"), Series("line", rise, left, label="leaves")]
-    for stable, style in ((True, "good circle large front"), (False, "bad cross large front")):
-        heats = [root["heat"] for root in numbers["roots"] if root["stable"] == stable]
-        if heats:
-            names = [in_words("temperature", heat["rise"]) for heat in heats]
-            at = [heat["rise"] for heat in heats], [heat["power"] for heat in heats]
-            lines.append(Series("marks", *at, label="stable" if stable else "unstable", style=style, names=names))
+    for label, style, own in _by_stability(numbers["roots"]):
+        rises, powers = ([root["heat"][key] for root in own] for key in ("rise", "power"))
+        names = [in_words("temperature", rise) for rise in rises]
+        lines.append(Series("marks", rises, powers, label=label, style=style, names=names))
     top = 3.0 * max(root["heat"]["power"] for root in numbers["roots"]) if numbers["roots"] else None
     return Panel("Heat made and heat that leaves", Axis("temperature", "rise of the faces"),
                  Axis("power", "heat", low=0.0, high=top), lines)  # fmt: skip

@@ -1,9 +1,8 @@
 """Followability: up to which runout a lip or a segment follows its shaft, over the speed and one key more; in closed
 form, confirmed by runs, beside what the design guide allows by experience."""
 
-import dataclasses
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Annotated
 
@@ -66,7 +65,7 @@ def run(scenario, settings, tools) -> Answer:
         raise ScenarioError(scenario.name, f"{where}.runs", str(settings.runs), "0 to 50")
     along = axis(settings.vary, scenario.name, f"{where}.vary") if settings.vary else None
     values = [{along["key"]: given} for given in along["given"]] if along else [{}]
-    scenes = [_aligned(with_values(scenario, value).scene) for value in values]
+    scenes = [_round(with_values(scenario, value).scene) for value in values]
     names = [f"{along['key']} = {given}" for given in along["given"]] if along else [scenario.name]
     curves = [curve(scene, speeds) for scene in scenes]
     points = [
@@ -74,8 +73,7 @@ def run(scenario, settings, tools) -> Answer:
         for k in range(len(scenes))
         for speed in np.interp(np.linspace(0.1, 0.9, settings.runs), np.linspace(0, 1, len(speeds)), np.sort(speeds))
     ]
-    found = tools.map(partial(confirmed, [dataclasses.asdict(scene) for scene in scenes]), points, "runs")
-    runs = [{**point, **row} for point, row in zip(points, found, strict=True)]
+    rows = tools.map(partial(confirmed, scenes), points, "runs")
     numbers = {
         "names": names,
         "speed": own,
@@ -84,61 +82,51 @@ def run(scenario, settings, tools) -> Answer:
         "most": MOST * scenario.scene.shaft.radius,
         "curves": [{"name": name, "speed": speeds.tolist(), "eccentricity": line} for name, line in
                    zip(names, curves, strict=True)],
-        "runs": runs,
+        "runs": [{**point, **row} for point, row in zip(points, rows, strict=True)],
         "guide": guide(scenario.scene),
     }  # fmt: skip
     with reading_in({"rad/s": "rpm"}):
-        found = _found(scenario, numbers)
-        return Answer(numbers, found, _tables(numbers), _panels(numbers), _notes(numbers))
+        return Answer(numbers, _found(scenario, numbers), _tables(numbers), _panels(numbers), _notes(numbers))
 
 
-def _aligned(scene):
-    """The scene at a constant speed, without lobes: a single wave."""
-    return dataclasses.replace(scene, shaft=dataclasses.replace(scene.shaft, lobes=[]))
+def _round(scene):
+    """The scene without lobes: a single wave."""
+    return _with_shaft(scene, lobes=[])
+
+
+def _with_shaft(scene, **values):
+    """The scene with other values of its shaft; at another speed a lip's loss factor stays, not its damping."""
+    return replace(scene, shaft=replace(scene.shaft, **values))
+
+
+def _limit(scene, speed: float) -> float:
+    """Largest eccentricity (m) that is followed at a constant speed (rad/s), in closed form."""
+    at = _with_shaft(scene, speed=speed)
+    return largest_eccentricity(followers_of(at), at.shaft, speed)
 
 
 def curve(scene, speeds) -> list:
     """Largest eccentricity (m) at each speed (rad/s); None beyond a fifth of the radius."""
-    found = []
-    for speed in speeds:
-        at = _at(scene, float(speed))
-        limit = largest_eccentricity(followers_of(at), at.shaft, float(speed))
-        found.append(limit if limit <= MOST * scene.shaft.radius else None)
-    return found
-
-
-def _at(scene, speed, eccentricity=None):
-    """The scene at a constant speed, the lip's damping as at its own: the loss factor is that of each speed."""
-    shaft = dataclasses.replace(scene.shaft, speed=speed)
-    if eccentricity is not None:
-        shaft = dataclasses.replace(shaft, eccentricity=eccentricity)
-    return dataclasses.replace(scene, shaft=shaft)
+    limits = [_limit(scene, float(speed)) for speed in speeds]
+    return [limit if limit <= MOST * scene.shaft.radius else None for limit in limits]
 
 
 def confirmed(scenes, point) -> dict:
     """The largest eccentricity (m) that runs from the following orbit keep to at one speed, by halving between ones
-    that do and do not, to 1e-4; `apart` from the closed form (relative), which is None beyond the radius.  `scenes`
-    as dicts."""
-    from pydantic import TypeAdapter
-
-    from ..scene.radial import RadialScene
-
-    scene = TypeAdapter(RadialScene).validate_python(
-        {name: part for name, part in scenes[point["curve"]].items() if part is not None}
-    )
-    speed = point["speed"]
-    at = _at(scene, speed)
-    limit = largest_eccentricity(followers_of(at), at.shaft, speed)
+    that do and do not, to 1e-4; `apart` from the closed form (relative), which is None beyond the radius."""
+    scene, speed = scenes[point["curve"]], point["speed"]
+    limit = _limit(scene, speed)
     if not 0.0 < limit <= MOST * scene.shaft.radius:
         return {"eccentricity": None, "closed_form": limit if limit < scene.shaft.radius else None, "apart": None}
     low, high = 0.9 * limit, 1.1 * limit
     for wanted, rides in ((low, True), (high, False)):
-        if follows(_at(scene, speed, wanted)) != rides:
+        if follows(_with_shaft(scene, speed=speed, eccentricity=wanted)) != rides:
             found = f"at {in_words('speed', speed)} the runs do not lose contact within 10 % of the closed form"
             return {"eccentricity": None, "closed_form": limit, "apart": None, "failed": found}
     while high - low > 5e-5 * limit:
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if follows(_at(scene, speed, middle)) else (low, middle)
+        rides = follows(_with_shaft(scene, speed=speed, eccentricity=middle))
+        low, high = (middle, high) if rides else (low, middle)
     found = 0.5 * (low + high)
     return {"eccentricity": found, "closed_form": limit, "apart": found / limit - 1.0}
 
@@ -172,8 +160,8 @@ def guide(scene) -> dict:
 
 def _found(scenario, numbers) -> str:
     """The largest eccentricity at the scenario's speed."""
-    own, speed = _aligned(scenario.scene), numbers["speed"]
-    limit = largest_eccentricity(followers_of(_at(own, speed)), own.shaft, speed)
+    own, speed = _round(scenario.scene), numbers["speed"]
+    limit = _limit(own, speed)
     at = f"At {in_words('speed', speed, digits=5)}"
     if limit == 0.0:
         return f"{at} nothing is followed: friction and offset take all of the preload."
