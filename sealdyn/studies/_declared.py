@@ -36,12 +36,12 @@ class Setting:
 
 def about(name: str) -> str:
     """What study `name` (hyphens or underscores) is, in a line."""
-    return " ".join((study_module(name.replace("-", "_")).__doc__ or "").split("\n\n")[0].split())
+    return " ".join((study_module(name).__doc__ or "").split("\n\n")[0].split())
 
 
 def settings_of(name: str) -> list[Setting]:
     """The settings of study `name`."""
-    kind = study_module(name.replace("-", "_")).Settings
+    kind = study_module(name).Settings
     table = table_schema(kind)
     rows = []
     for one in dataclasses.fields(kind):
@@ -83,7 +83,7 @@ def help_text(name: str) -> str:
 
 def time_of(name: str) -> str:
     """How long study `name` takes, in words."""
-    words, seconds = study_info(name.replace("-", "_")).timed
+    words, seconds = study_info(name).timed
     return f"{seconds} s of processor time on one core with `{words}` and no other settings"
 
 
@@ -112,7 +112,7 @@ def list_studies() -> dict[str, str]:
     >>> sealdyn.list_studies()["critical-speed"]
     'Where does the seal start to whirl, and what becomes of it?'
     """
-    return {name: study_info(name.replace("-", "_")).asks or about(name) for name in study_names()}
+    return {name: study_info(name).asks or about(name) for name in study_names()}
 
 
 def schema(radial: bool = False) -> dict[str, Any]:
@@ -130,7 +130,7 @@ def schema(radial: bool = False) -> dict[str, Any]:
 
 def _table(name: str) -> dict:
     """The schema of the settings of a study, with what it is and how long it takes."""
-    table = table_schema(study_module(name.replace("-", "_")).Settings)
+    table = table_schema(study_module(name).Settings)
     return {**table, "description": f"{about(name)}  {time_of(name)}.", "additionalProperties": False}
 
 
@@ -146,11 +146,9 @@ def json_schema(file: type = ScenarioFile) -> dict:
     for kind, table in {
         id(table): (kind, table) for kind, table in _tables_below(file, schema, schema["$defs"])
     }.values():
-        keys = table["properties"]
         if issubclass(kind, Film):
-            keys["model"]["enum"] = film_choices()
-        for key, meaning in _meanings(kind).items():
-            keys[key]["description"] = "\n".join([meaning, *filter(None, [keys[key].get("description")])])
+            table["properties"]["model"]["enum"] = film_choices()
+        _add_meanings(table, kind)
         _add_diameters(table, kind)
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema, "title": "sealdyn scenario"}
 
@@ -158,15 +156,22 @@ def json_schema(file: type = ScenarioFile) -> dict:
 def table_schema(kind: type) -> dict:
     """JSON schema of a table that is no part of a scene: keys with what they mean, what is expected, and defaults."""
     table = _without_null(TypeAdapter(kind).json_schema())
+    _add_meanings(table, kind)
+    return table
+
+
+def _add_meanings(table: dict, kind: type) -> None:
+    """Before what is expected of each key of a table's schema, what it means."""
     for key, meaning in _meanings(kind).items():
         holds = table["properties"][key]
         holds["description"] = "\n".join([meaning, *filter(None, [holds.get("description")])])
-    return table
 
 
 def _add_diameters(table: dict, kind: type) -> None:
     """Beside each radius of a table's schema its diameter: one of the two, or at most one."""
     twins = {radius: diameter for diameter, radius in diameters(tables(kind)[""]).items()}
+    if not twins:
+        return
     properties = {}
     for key, holds in table["properties"].items():
         properties[key] = holds
@@ -174,12 +179,11 @@ def _add_diameters(table: dict, kind: type) -> None:
             expected = holds["description"].splitlines()[-1]
             properties[twins[key]] = holds | {"description": f"In place of `{key}`: twice that.\n{expected}"}
     table["properties"] = properties
-    either = {r: [{"required": [r]}, {"required": [d]}] for r, d in twins.items()}
-    if not twins:
-        return
     needed = table.get("required", [])
-    both = {r: {"not": {"required": [r, d]}} for r, d in twins.items()}
-    table["allOf"] = [{"oneOf": ways} if r in needed else both[r] for r, ways in either.items()]
+    table["allOf"] = [
+        {"oneOf": [{"required": [r]}, {"required": [d]}]} if r in needed else {"not": {"required": [r, d]}}
+        for r, d in twins.items()
+    ]
     table["required"] = [key for key in needed if key not in twins]
 
 

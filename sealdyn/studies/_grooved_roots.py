@@ -4,7 +4,7 @@ one closing force, and the speeds at which they begin to grow."""
 import math
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import pairwise
 
 import numpy as np
@@ -94,20 +94,13 @@ def _roots_of(found: AlignedFilm, rings) -> dict:
     answer = {}
     for name, law, inertias, whirl in _motions(rings):
         for kind in ("", TOGETHER)[: len(rings)]:
-
-            def root_of(motion, law=law, inertias=inertias, whirl=whirl, together=bool(kind)):
-                root = _root(motion, law, rings, inertias, whirl, together)
-                if not motion.uneven:
-                    return root
-                around = 0.0 if law is axial_law else 1j * motion.frame
-                return root_near(_determinant(motion, rings), root - around) + around
-
-            try:
+            root_of = partial(_root, law=law, rings=rings, inertias=inertias, whirl=whirl, together=bool(kind))
+            answer[name + kind] = None
+            with suppress(ArithmeticError):
                 root = found.of_motion(root_of)[0]
                 # Without a whirl that way, overdamped, it is another's.
-                answer[name + kind] = [root.real, root.imag] if name == "axial" or root.imag * whirl > 0.0 else None
-            except ArithmeticError:
-                answer[name + kind] = None
+                if name == "axial" or root.imag * whirl > 0.0:
+                    answer[name + kind] = [root.real, root.imag]
     return answer
 
 
@@ -117,9 +110,10 @@ def growing_roots(fine: Motion, rings: tuple[Ring, ...]) -> dict:
         inertia = math.prod(ring.mass * ring.transverse_inertia**2 for ring in rings)
         return {"unstable": unstable_roots(_determinant(fine, rings), inertia, degree=6 * len(rings))}
     counts = {}
-    for name, law, inertias in (("axial", axial_law, [ring.mass for ring in rings]),
-                                ("tilt", tilt_law, [ring.transverse_inertia for ring in rings])):  # fmt: skip
-        counts[f"unstable_{name}"] = unstable_roots(law(fine, *rings), math.prod(inertias), degree=2 * len(rings))
+    # Both whirls are roots of one law.
+    for name, law, inertias, _ in _motions(rings)[:2]:
+        count = unstable_roots(law(fine, *rings), math.prod(inertias), degree=2 * len(rings))
+        counts[f"unstable_{name.partition('_')[0]}"] = count
     return {**counts, "unstable": sum(counts.values())}
 
 
@@ -142,19 +136,24 @@ def _root(motion, law, rings, inertias, whirl: float, together: bool) -> complex
     if together:
         # The film is not strained.
         parts = [ring.axial_stiffness if law is axial_law else ring.angular_stiffness for ring in rings]
-        return root_near(whole, complex(0.0, whirl * math.sqrt(sum(parts) / sum(inertias))))
-    # Of two rings the film is stiffer than their supports.
-    inertia = 1.0 / sum(1.0 / one for one in inertias)
-    film = motion.axial_impedance if law is axial_law else motion.tilt_impedance
-    w = 1.0
-    for _ in range(30):
-        s = 1j * whirl * w
-        # law + inertia w^2 is the stiffness that the motion meets.
-        stiffness = (whole(s) + inertia * w * w if len(rings) == 1 else film(s)).real
-        before, w = w, math.sqrt(max(stiffness, 1e-3 * abs(stiffness)) / inertia)
-        if abs(w - before) < NEXT_TO * w:
-            break
-    return root_near(whole, complex(0.0, whirl * w))
+        w = math.sqrt(sum(parts) / sum(inertias))
+    else:
+        # Of two rings the film is stiffer than their supports.
+        inertia = 1.0 / sum(1.0 / one for one in inertias)
+        film = motion.axial_impedance if law is axial_law else motion.tilt_impedance
+        w = 1.0
+        for _ in range(30):
+            s = 1j * whirl * w
+            # law + inertia w^2 is the stiffness that the motion meets.
+            stiffness = (whole(s) + inertia * w * w if len(rings) == 1 else film(s)).real
+            before, w = w, math.sqrt(max(stiffness, 1e-3 * abs(stiffness)) / inertia)
+            if abs(w - before) < NEXT_TO * w:
+                break
+    root = root_near(whole, complex(0.0, whirl * w))
+    if not motion.uneven:
+        return root
+    around = 0.0 if law is axial_law else 1j * motion.frame
+    return root_near(_determinant(motion, rings), root - around) + around
 
 
 # --- over the speed ------------------------------------------------------------------------------------

@@ -60,12 +60,12 @@ def journal_of(out: Path) -> Path:
 
 
 def study_module(name: str):
-    """The study `name` (underscored)."""
-    return importlib.import_module(studies.study_module(name))
+    """The study `name` (hyphens or underscores)."""
+    return importlib.import_module(studies.study_module(name.replace("-", "_")))
 
 
 def study_info(name: str) -> Info:
-    """What study `name` (underscored) declares of itself."""
+    """What study `name` (hyphens or underscores) declares of itself."""
     return study_module(name).INFO
 
 
@@ -155,12 +155,12 @@ def run_study(
     ('balance.h5', True)
     """
     name = name.replace("-", "_")
-    module, info = study_module(name), study_info(name)
+    module, info, radial = study_module(name), study_info(name), isinstance(scenario.scene, RadialScene)
     _refuse_seal(name, info, scenario.scene)
+    studied, left_out, springs = scenario, [], []
     # What can be left out, a face seal has.
-    studied, left_out = (scenario, []) if _is_radial(scenario.scene) else without(scenario, leave_out)
-    springs = []
-    if not _is_radial(scenario.scene):
+    if not radial:
+        studied, left_out = without(scenario, leave_out)
         if "secondary-seal" in info.refuses:
             scene, springs = scenes.with_springs_for_seals(studied.scene)
             studied = replace(studied, scene=scene, read=None)
@@ -183,9 +183,9 @@ def run_study(
         # Unless the study has told it itself.
         if failures and failures[0] not in known:
             notes.append(f"Failed points: {len(failures)}; the first: {failures[0]}")
-        if info.warm and not _is_radial(studied.scene) and studied.scene.film.heat is not None:
+        if info.warm and not radial and studied.scene.film.heat is not None:
             notes.append(info.warm)
-        if info.aligned and not _is_radial(studied.scene) and (askew := _moment(studied.scene)):
+        if info.aligned and not radial and (askew := _moment(studied.scene)):
             notes.append(f"The numbers are of aligned faces, which do not stay so: {askew}.")
         for key in springs:
             seal = scenes.part(scenario.scene, key)
@@ -203,32 +203,24 @@ def run_study(
     return {**answer, "archive": str(out)}
 
 
-def _is_radial(scene) -> bool:
-    return isinstance(scene, RadialScene)
-
-
 def _refuse_seal(name: str, info: Info, scene):
     """Raises SceneError for a seal of a kind that the study `name` does not know."""
-    if info.seals not in ("any", "radial" if _is_radial(scene) else "face"):
-        study = name.replace("_", "-")
-        if _is_radial(scene):
+    study, radial = name.replace("_", "-"), isinstance(scene, RadialScene)
+    if info.seals not in ("any", "radial" if radial else "face"):
+        if radial:
             key, found = "lip" if scene.lip else "circumferential", "a radial seal"
-            known = [one for one in studies.study_names() if study_info(one.replace("-", "_")).seals != "face"]
+            known = [one for one in study_names() if study_info(one).seals != "face"]
             raise SceneError(key, found, f"a face seal for {study}; of radial ones there are {', '.join(known)}")
         raise SceneError("film", "a face seal", f"[lip] or [circumferential]: {study} is of radial seals")
-    if _is_radial(scene):
+    if radial:
         return
     if (face := grooves_of(scene)[0]) and not info.grooved:
-        known = [one for one in studies.study_names() if study_info(one.replace("-", "_")).grooved]
+        known = [one for one in study_names() if study_info(one).grooved]
         served = f"none, a run, or one of the studies {', '.join(known)}"
         raise SceneError(f"{face}.grooves", "grooves in a face", f"{served}: {name} does not reckon with grooves")
-    if info.wavy:
-        return
-    if waves_of(scene):
+    if not info.wavy and ((wavy := waves_of(scene)) or scene.film.pads):
         expected = f"none: this study ({name}) knows faces that are the same all around"
-        raise SceneError(_key_of_pattern(scene), "wavy faces", expected)
-    if scene.film.pads:
-        raise SceneError("film.pads", "pads", f"none: this study ({name}) knows faces that are the same all around")
+        raise SceneError(_key_of_pattern(scene), "wavy faces" if wavy else "pads", expected)
 
 
 def _key_of_pattern(scene) -> str:

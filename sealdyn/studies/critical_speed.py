@@ -175,12 +175,13 @@ def in_time(scene, model, eigenvalue, how, tools, pace) -> dict:
     value, uncertainty = line_crossing(*last)
     order = np.argsort([*speeds, *near])
     speeds, rows = [[*speeds, *near][i] for i in order], [[*rows, *closer][i] for i in order]
-    bracket = [last[0][0], last[1][0]]
-    found = {"value": value, "uncertainty": uncertainty, "bracket": bracket, "method": how["method"]}
-    ends = [row for _, row in last]
-    found["accuracy"] = min(row["accuracy"] for row in ends)
-    found["numerical_damping"] = max(row["numerical_damping"] for row in ends)
-    found["against_eigenvalue"] = max(abs(row["rate"] - row["eigenvalue"]) for row in ends)
+    bracket, ends = zip(*last, strict=True)
+    found = {
+        "value": value, "uncertainty": uncertainty, "bracket": list(bracket), "method": how["method"],
+        "accuracy": min(row["accuracy"] for row in ends),
+        "numerical_damping": max(row["numerical_damping"] for row in ends),
+        "against_eigenvalue": max(abs(row["rate"] - row["eigenvalue"]) for row in ends),
+    }  # fmt: skip
     return {"time_domain": found, "growth": columns(rows, speeds)}
 
 
@@ -209,9 +210,12 @@ def disagreements(growth) -> list[bool]:
 
 def columns(rows, speeds) -> dict:
     names = {"eigenvalue": "eigenvalue", "time_domain": "rate", "uncertainty": "uncertainty"}
-    found = {"speed": list(speeds), **{k: [row.get(n) for row in rows] for k, n in names.items()}}
-    found["decided"] = [row.get("decided", False) for row in rows]
-    return {**found, "failed": [row.get("failed") for row in rows]}
+    return {
+        "speed": list(speeds),
+        **{column: [row.get(name) for row in rows] for column, name in names.items()},
+        "decided": [row.get("decided", False) for row in rows],
+        "failed": [row.get("failed") for row in rows],
+    }
 
 
 # --- beyond linear ------------------------------------------------------------------------------------
@@ -247,10 +251,9 @@ def beyond(model, scene, threshold, settings, tools) -> dict | None:
     family = branch(at_threshold, threshold)
     if not family:
         return _not_followed("no family of circular whirls was found at the threshold")
-    unit = contact_tilt_aligned(at_threshold)
-    found = {"kind": kind_of(family, threshold), "branch": family_columns(family), "contact_tilt": unit}
-    ends_in_contact = family[-1].h_min < 2 * at_threshold.face[4]
-    found["contact_speed"] = family[-1].speed if ends_in_contact else None
+    touches = family[-1].speed if family[-1].h_min < 2 * at_threshold.face[4] else None
+    found = {"kind": kind_of(family, threshold), "branch": family_columns(family),
+             "contact_tilt": contact_tilt_aligned(at_threshold), "contact_speed": touches}  # fmt: skip
     low, high = min(w.speed for w in family), max(w.speed for w in family)
     inner = ((np.arange(settings.speeds) + 0.5) / settings.speeds).tolist()
     below = [threshold - (threshold - low) * x for x in inner] if low < 0.9995 * threshold else []
@@ -262,8 +265,8 @@ def beyond(model, scene, threshold, settings, tools) -> dict | None:
     outside = [min(low - 0.005 * threshold, 0.998 * threshold), max(high + 0.005 * threshold, 1.002 * threshold)]
     points = []
     for w in sorted([*below, *above, *outside]):
-        points += [{"speed": w, "start": "small", "shape": None, "frequency": None}]
-        points += [{"speed": w, "start": "large", "shape": (0.97 * family[-1].q).tolist(),
+        points += [{"speed": w, "start": "small", "shape": None, "frequency": None},
+                   {"speed": w, "start": "large", "shape": (0.97 * family[-1].q).tolist(),
                     "frequency": family[-1].frequency}]  # fmt: skip
     rows = tools.map(partial(fate, scene), points, "fate")
     found["directions"] = [

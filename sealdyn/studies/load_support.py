@@ -5,7 +5,7 @@ cavities, stiffness, and the stiffness over the leakage, by which gas seals are 
 from dataclasses import dataclass
 from functools import partial
 
-from ..answers import Answer, Axis, Panel, Series, Table
+from ..answers import Answer, Axis, Panel, Series, Table, table_of
 from ..quantities import in_words
 from ..scenario.errors import ScenarioError
 from ..scenario.reader import with_values
@@ -128,20 +128,20 @@ def _table(numbers) -> Table:
     """A row for every balance; the seal rides at the widest stable one.  Contact and cavities where there are any."""
     (key,), rubs = numbers["axes"], _rubs(numbers)
     torn = any(root["cavitated_fraction"] for row in numbers["rows"] for root in row.get("roots", ()))
-    names = (
-        ("clearance", "clearance", "clearance"), ("1", "stable", "stable"),
+    columns = (
+        (quantity_along(key), key["key"], "value"), ("clearance", "clearance", "clearance"), ("1", "stable", "stable"),
         *([("share", "load support", "load_support"), ("force", "by contact", "contact_force")] if rubs else []),
         ("1", "friction coefficient", "friction_coefficient"), ("leakage", "leakage", "leakage"),
         ("axial_stiffness", "stiffness", "stiffness"),
         *([("cavitated_fraction", "cavity", "cavitated_fraction")] if torn else []),
+        ("1", "without a balance", "lost"),
     )  # fmt: skip
     rows = [
-        [row[key["key"]], *(root.get(name) for *_, name in names), row.get("failed") or row.get("message")]
+        {**root, "value": row[key["key"]], "lost": row.get("failed") or row.get("message")}
         for row in numbers["rows"]
         for root in row.get("roots") or [{}]
     ]
-    columns = [(quantity_along(key), key["key"]), *(name[:2] for name in names), ("1", "without a balance")]
-    return Table("balances", columns, rows)
+    return table_of("balances", columns, rows)
 
 
 def _notes(numbers) -> list[str]:
@@ -156,16 +156,15 @@ def _notes(numbers) -> list[str]:
 def _panels(numbers) -> list[Panel]:
     """Four panels over the key: where the seal rides joined, other balances as marks, cavities below the load."""
     (key,), rows = numbers["axes"], numbers["rows"]
-    x, places = along(key)
-    panels = []
+    (x, places), panels = along(key), []
+    torn = [row.get("cavitated_fraction") for row in rows]
     for output, quantity, words, colour in (*(DRAWN[:1] if _rubs(numbers) else [STIFFNESS]), *DRAWN[1:]):
         rest = [row.get(output) for row in rows]
         if all(value is None for value in rest):
             panels.append(Panel(words, note="no balance at any value"))
             continue
         series = [Series("line", places, rest, label="where it rides", style=f"{colour} circle")]
-        if output == "load_support" and any(row.get("cavitated_fraction") for row in rows):
-            torn = [row.get("cavitated_fraction") for row in rows]
+        if output == "load_support" and any(torn):
             series.append(Series("shade", places, torn, label="of the face cavitates", style="leakage"))
         for stable, label, style in ((True, "another stable balance", "fourth circle"),
                                      (False, "unstable balance", "black cross")):  # fmt: skip

@@ -42,9 +42,8 @@ def run(scenario, settings, tools) -> Answer:
     wanted = (settings.items,) if isinstance(settings.items, int) else settings.items
     unknown = set(wanted) - set(names.values())
     if unknown:
-        raise ScenarioError(
-            scenario.name, "study.failures.items", str(sorted(unknown)), f"items from 1 to {max(names.values())}"
-        )
+        expected = f"items from 1 to {max(names.values())}"
+        raise ScenarioError(scenario.name, "study.failures.items", str(sorted(unknown)), expected)
     chosen = [name for name, item in names.items() if item in wanted or not wanted]
     found = tools.map(shown, [{"exhibit": name} for name in chosen], "exhibit")
     rows = []

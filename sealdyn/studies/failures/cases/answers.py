@@ -280,8 +280,7 @@ def linear_gap(misalignment: float) -> float:
     linear = run.model.linear_scene()
     answers = [(h, linear.response(h)) for h in run.segment(0).harmonics()]
     most, _, closing = steady_extremes(linear, answers, run.period())
-    inner, outer, coning, c = run.model.face[0], run.model.face[1], run.model.face[3], run.model.clearance
-    return min(c - closing - inner * most, c + coning * (outer - inner) - closing - outer * most) / c
+    return min(h - closing - r * most for r, h in run.model.aligned_gaps()) / run.model.clearance
 
 
 def onset() -> float:
@@ -292,14 +291,12 @@ def onset() -> float:
 def orbits(shares, touching: float) -> list:
     """Periodic orbits at shares of the linear onset, each guessed from the two before: the linear steady state plus
     what the nonlinear film adds to it."""
-    found, known = [], []
+    found, known = [], [(0.0, 0.0)]
     for share in shares:
         shooter = Shooter(scene(share * touching), ACCURACY, tight=1e-9)
-        linear = shooter.guess()
-        guess = linear
-        if known:
-            (before, added), (_, less) = known[-1], known[-2] if known[1:] else (0.0, 0.0)
-            last = known[-2][0] if known[1:] else 0.0
+        guess = linear = shooter.guess()
+        if found:
+            (last, less), (before, added) = known[-2:]
             guess = linear + added + (added - less) * (share - before) / (before - last)
         orbit = shooter.find(guess, target=1e-7, most=25)
         known.append((share, orbit.start - linear))

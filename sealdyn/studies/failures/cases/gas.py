@@ -209,11 +209,9 @@ def of_the_film(squeeze_number: float, grading: float = GRADING) -> tuple[comple
     linear = LinearFilm.about(FilmDerivatives(gas.FILM, unknowns, f), s, x, steps)
     omega = squeeze_number * PRESSURE * CLEARANCE**2 / (12.0 * MU * (OUTER - INNER) ** 2)
     stiff = PRESSURE * math.pi * (OUTER**2 - INNER**2) / CLEARANCE
-    both = []
-    for frequency in (omega, 0.0):
-        k, d = linear.matrices(frequency)
-        both.append(complex(k[0, 0], omega * d[0, 0]) / stiff)
-    return both[0], both[1]
+    both = (linear.matrices(frequency) for frequency in (omega, 0.0))
+    own, slow = (complex(k[0, 0], omega * d[0, 0]) / stiff for k, d in both)
+    return own, slow
 
 
 def meets_trapped_gas(scene, run) -> str:

@@ -180,11 +180,8 @@ def meets_degenerate_geometry(scene, run) -> str:
     apart = (max(gaps) - min(gaps)) / run.model.clearance
     if apart == 0.0:
         return "its faces are parallel"
-    return (
-        f"its film is {in_words('share', apart, digits=2)} of the clearance thicker at one edge than at the other"
-        if apart < FLAT
-        else ""
-    )
+    share = in_words("share", apart, digits=2)
+    return f"its film is {share} of the clearance thicker at one edge than at the other" if apart < FLAT else ""
 
 
 def show_degenerate_geometry() -> list[dict]:

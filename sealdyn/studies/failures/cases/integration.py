@@ -64,12 +64,9 @@ def meets_neutral_stability(scene, run) -> str:
     """A whirl that hardly grows or decays."""
     whirls = [mode.value for mode in run.model.linear_scene().modes() if mode.value.imag]
     slowest = min(whirls, key=lambda value: abs(value.real / value.imag), default=1.0 + 1.0j)
-    share = math.expm1(2 * math.pi * slowest.real / abs(slowest.imag))
-    return (
-        f"a whirl that grows or decays by {in_words('share', abs(share), digits=1)} a turn of its own"
-        if abs(share) < SLOW
-        else ""
-    )
+    share = abs(math.expm1(2 * math.pi * slowest.real / abs(slowest.imag)))
+    said = f"a whirl that grows or decays by {in_words('share', share, digits=1)} a turn of its own"
+    return said if share < SLOW else ""
 
 
 def show_neutral_stability() -> list[dict]:
