@@ -157,9 +157,9 @@ def onset(scenario, point: dict) -> dict:
     except NoOnset as reason:
         return {"key": key, "margin": point["margin"], "touch": rough, "failed": str(reason),
                 **linear_films(scene, key, rough, scenario.scene)}  # fmt: skip
+    rest = Model(scene(0.0), 1e-6)
     result = {"key": key, "formula": formula, "linear_radius": touching, "margin": point["margin"], "touch": rough,
-              "times_own": times_own(scenario.scene, key, formula),
-              "clearance": Model(scene(0.0), 1e-6).clearance}  # fmt: skip
+              "times_own": times_own(scenario.scene, key, formula), "clearance": rest.clearance}  # fmt: skip
     limit = SMALL_TILT if si_unit(scenario.scene, key) == "rad" else np.inf
 
     def stands():
@@ -171,8 +171,8 @@ def onset(scenario, point: dict) -> dict:
     if (result["times_own"] or 0.0) > point["most"]:
         why = f"beyond {point['most']:g} times the scenario's own nothing is followed"
         return {**result, "failed": why, **stands()}
-    if Model(scene(0.0), 1e-6).interface.stores:
-        found = ramped(scenario, key, formula, point["margin"], rough / result["clearance"])
+    if rest.interface.stores:
+        found = ramped(scenario, key, formula, point["margin"], rough / rest.clearance)
         return {**result, **found, **(stands() if "nonlinear" not in found else {})}
     follower = Follower(scene, point["margin"], min(scenario.run.accuracy, 1e-7), touch=rough)
     try:

@@ -177,24 +177,22 @@ def two_that_hold():
     return replace(scene, film=film, closing=Closing(balance_ratio=0.6, spring_force=SPRING))
 
 
-def _from(model, start) -> float:
-    """The clearance (m) that Newton's method finds from one."""
-    return newton(lambda clearance: _excess(model, clearance), start)
+def _by_newton(model) -> float:
+    """The clearance (m) that Newton's method finds from 10 um."""
+    return newton(lambda clearance: _excess(model, clearance), 10e-6)
 
 
 def _excess(model, clearance) -> float:
     """Opening over closing force, less 1."""
-    film = model.scene.film
-    return (
-        model.interface.opening_force(clearance, film.inner_pressure, film.outer_pressure) / model.closing_force() - 1
-    )
+    pressures = model.scene.film.inner_pressure, model.scene.film.outer_pressure
+    return model.interface.opening_force(clearance, *pressures) / model.closing_force() - 1
 
 
 def one_that_holds() -> dict:
     """Newton from the design clearance finds one answer, the search over all clearances every one."""
     model = Model(diverging())
     roots = model.interface.equilibria
-    alone = _from(model, 10e-6)
+    alone = _by_newton(model)
     held = [root.clearance for root in roots if root.stable]
     off, residual = min(abs(alone - c) for c in held), max(abs(_excess(model, c)) for c in held)
     return row(
@@ -211,7 +209,7 @@ def another_that_holds() -> dict:
     model = Model(two_that_hold())
     roots = model.interface.equilibria
     held = sorted(root.clearance for root in roots if root.stable)
-    alone, residual = _from(model, 10e-6), max(abs(_excess(model, c)) for c in held)
+    alone, residual = _by_newton(model), max(abs(_excess(model, c)) for c in held)
     told = in_words("h_min", alone, digits=3)
     return row(
         11, "Two stable clearances",
@@ -288,19 +286,18 @@ def onset() -> float:
     return brentq(linear_gap, 1e-6, 0.1, xtol=1e-15)
 
 
-def orbits(shares, touching: float) -> list:
-    """Periodic orbits at shares of the linear onset, each guessed from the two before: the linear steady state plus
+def orbits(touching: float) -> dict:
+    """Periodic orbits at SHARES of the linear onset, each guessed from the two before: the linear steady state plus
     what the nonlinear film adds to it."""
-    found, known = [], [(0.0, 0.0)]
-    for share in shares:
+    found, known = {}, [(0.0, 0.0)]
+    for share in SHARES:
         shooter = Shooter(scene(share * touching), ACCURACY, tight=1e-9)
         guess = linear = shooter.guess()
         if found:
             (last, less), (before, added) = known[-2:]
             guess = linear + added + (added - less) * (share - before) / (before - last)
-        orbit = shooter.find(guess, target=1e-7, most=25)
-        known.append((share, orbit.start - linear))
-        found.append(orbit)
+        found[share] = shooter.find(guess, target=1e-7, most=25)
+        known.append((share, found[share].start - linear))
     return found
 
 
@@ -314,7 +311,7 @@ def meets_linear_theory(scene, run) -> str:
 def show_linear_theory() -> list[dict]:
     """Film that is left where linear theory has none, by the periodic orbit, checked in time."""
     touching = onset()
-    way = dict(zip(SHARES, orbits(SHARES, touching), strict=True))
+    way = orbits(touching)
     orbit, later = way[1.0], way[SHARES[-1]]
     found, still = (o.extremes["h_min"]["of_clearance"] for o in (orbit, later))
     # The run begins a little off the orbit and must come back to it.

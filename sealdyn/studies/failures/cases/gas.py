@@ -268,15 +268,16 @@ def frozen_damping(linear) -> float:
     return float(linear.force_by_x[0, :n] @ pressed - linear.force_by_gap_rate[0, 0])
 
 
-def swung(omega: float, euler: bool) -> complex:
-    """Axial dynamic stiffness (N/m) from the film's force while the gap swings, CAVITY_STEPS to a turn."""
+def swung(euler: bool) -> complex:
+    """Axial dynamic stiffness (N/m) from the film's force while the gap swings with the shaft, CAVITY_STEPS to a
+    turn; by implicit `euler`, or by TR-BDF2."""
     interface, rest, _ = seal()
     film, f, s = interface.film, interface.f, rest.copy()
-    x, h, swing = interface.steady(f, s), 2.0 * math.pi / omega / CAVITY_STEPS, SWING * interface.clearance
+    x, h, swing = interface.steady(f, s), 2.0 * math.pi / SPEED / CAVITY_STEPS, SWING * interface.clearance
     rate, forces, times = np.zeros_like(x), [], h * np.arange(1, TURNS * CAVITY_STEPS + 1)
 
     def stage(t, alpha, base):
-        s[DZ] = swing * math.sin(omega * t)
+        s[DZ] = swing * math.sin(SPEED * t)
         if film.settle(f, s, alpha, base, x):
             raise RuntimeError("the film was not solved")
         return alpha * (x - base)
@@ -293,7 +294,7 @@ def swung(omega: float, euler: bool) -> complex:
     last = slice(-CAVITY_STEPS, None)
     forces = np.array(forces[last]) - np.mean(forces[last])
     # sin(w t) is the imaginary part of exp(i w t).
-    return complex(-2.0 * np.mean(forces * 1j * np.exp(-1j * omega * times[last])) / swing)
+    return complex(-2.0 * np.mean(forces * 1j * np.exp(-1j * SPEED * times[last])) / swing)
 
 
 def leakage_by_reynolds_condition() -> tuple[float, float]:
@@ -334,9 +335,10 @@ def leakage_by_reynolds_condition() -> tuple[float, float]:
 def leakage_of_the_mean_cube() -> float:
     """Leakage (m^3/s) in closed form: weighted with ln r the balance of all cells leaves a flow through the mean of
     E(H^3), wherever cavities are, for what is dragged around the circle comes back."""
-    film, row_ = seal()[0].scene.film, lebeck_1979.ROWS[1]
-    waves = row_.amplitude * np.cos(2.0 * math.pi * np.arange(4096) / 4096)
-    cube = lebeck_1979.HALF**3 * float(np.mean(mean_film_cubed(seal()[0].clearance / lebeck_1979.HALF + waves)))
+    interface, half = seal()[0], lebeck_1979.HALF
+    film = interface.scene.film
+    waves = lebeck_1979.ROWS[1].amplitude * np.cos(2.0 * math.pi * np.arange(4096) / 4096)
+    cube = half**3 * float(np.mean(mean_film_cubed(interface.clearance / half + waves)))
     fall = film.outer_pressure - film.inner_pressure
     return 2.0 * math.pi * cube * fall / (12.0 * film.viscosity * math.log(film.outer_radius / film.inner_radius))
 
@@ -352,7 +354,7 @@ def show_moving_cavity() -> list[dict]:
     interface.film.wrench(interface.f, rest, interface.steady(interface.f, rest))
     k, d = (float(part[0, 0]) for part in linear.matrices(SPEED))
     true = complex(k, SPEED * d)
-    kept, euler = swung(SPEED, False), swung(SPEED, True)
+    kept, euler = swung(False), swung(True)
     loose, right = leakage_by_reynolds_condition()
     slow = float(linear.slow[0][0, 0])
     return [
