@@ -61,10 +61,9 @@ def run(scenario, settings, tools) -> Answer:
 
 def exhibits() -> dict[str, tuple]:
     """{name: (item, show, meets)} of the exhibits there are, by their items."""
-    files = [m.name for m in pkgutil.iter_modules(cases.__path__) if not m.name.startswith("_")]
     found = {}
-    for name in files:
-        found |= importlib.import_module(f"{cases.__name__}.{name}").EXHIBITS
+    for file in pkgutil.iter_modules(cases.__path__):
+        found |= importlib.import_module(f"{cases.__name__}.{file.name}").EXHIBITS
     return dict(sorted(found.items(), key=lambda pair: pair[1][0]))
 
 
