@@ -61,12 +61,7 @@ def archives(fresh: bool) -> list[Path]:
         out, begun = KEPT / f"{path.stem}.h5", time.perf_counter()
         if fresh or not out.exists():
             scenario = sealdyn.read_scenario(path, SHORTENED.get(path.stem, []))
-            try:
-                answer = run_study("work-precision", scenario, out, flags=FLAGS | OTHERS.get(path.stem, {}), workers=1)
-            except ValueError as error:
-                # A scenario of another study, or one being written.
-                print(f"{path.stem}: {error}")
-                continue
+            answer = run_study("work-precision", scenario, out, flags=FLAGS | OTHERS.get(path.stem, {}), workers=1)
             print(f"{path.stem} ({time.perf_counter() - begun:.0f} s)")
             for line in answer["verdict"]:
                 print(f"  {line}")

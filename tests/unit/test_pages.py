@@ -1,6 +1,7 @@
 """The generated pages are current: scenarios/README.md and outputs/gallery/README.md; their scripts run as typed."""
 
 import ast
+import json
 import re
 from pathlib import Path
 
@@ -24,6 +25,14 @@ def test_gallery_shows_every_picture_and_fills_every_table():
 
 
 @pytest.mark.core
+def test_every_shipped_scenario_is_charted():
+    """Speed against accuracy, by the script that takes what is shipped."""
+    folder = gallery.GALLERY.parents[1] / "scenarios"
+    shipped = {path.stem for pattern in ("*.toml", "radial/*.toml") for path in folder.glob(pattern)}
+    scenes = json.loads((gallery.GALLERY / "work_precision_all.json").read_text())["scenes"]
+    assert {scene["name"] for scene in scenes} == shipped
+
+
 def test_every_key_has_a_meaning():
     schema, radial = json_schema(), json_schema(RadialFile)
     for table in (schema, radial, *schema["$defs"].values(), *radial["$defs"].values()):
