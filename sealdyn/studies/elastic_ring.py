@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from ..answers import Answer, Axis, Level, Panel, Series, Table
+from ..answers import Answer, Axis, Level, Panel, Series, Table, table_of
 from ..dynamics.elastic_ring import (
     OperatingPoint,
     harmonic,
@@ -152,8 +152,7 @@ def _table(numbers) -> Table:
         ("share", "load support", "load_support"), ("1", "friction", "friction_coefficient"),
         ("leakage", "leakage", "leakage"),
     )  # fmt: skip
-    rows = [[point[key] for *_, key in names] for point in numbers["points"]]
-    return Table("operating points", [name[:2] for name in names], rows, {"leakage": "ml/h"})
+    return table_of("operating points", names, numbers["points"])
 
 
 def _panels(numbers) -> list[Panel]:
