@@ -283,14 +283,14 @@ def followability(model: Model) -> dict | None:
     **Source** Hayden & Keller (1974): the spring load must exceed secondary-seal friction plus the inertia of following
     the runout; the tilt derived here, from the resultant of a face that only pushes.
     **Valid** balanced or absent pressures, no film force, constant speed, no gyroscopic moment (a stator that does not
-    turn), only the stator floats.
+    turn), only the stator floats; of a tilt over time the largest.
     Returns `ring`, `available` (spring, N), `needed` (N), `friction`, `inertia`, `tilting` (N, what the moment asks
     for, at most), `holds`, `sure` (N, from which on all of the face is pressed), `sentence`; None where there is
     nothing to follow, as of a rotor that carries the runout itself.
     """
     scene, rotor = model.scene, model.scene.rotor
     floating = [k for k, floats in model.unknowns.floats.items() if floats]
-    tilt = constant_and_slope(rotor.runout, model.start)[0]
+    tilt = max(points(rotor.runout), key=abs)
     if floating != [0] or not (rotor.axial_runout or tilt) or scene.closing.spring_force is None:
         return None
     ring = scene.stator

@@ -355,6 +355,12 @@ def test_a_film_that_heats_more_than_dry_faces_spares_them_nothing():
     assert rows(*HELD)["heat"]["verdict"] == "note"
 
 
+def test_a_runout_that_grows_is_followed_where_it_is_largest():
+    """From nothing at the start."""
+    grows = rows("rotor.runout={time=[0, 0.01], value=[0, 2e-4]}")["hang_up"]
+    assert grows == rows("rotor.runout=2e-4")["hang_up"] and grows["value"] == pytest.approx(40.0)
+
+
 def test_a_stator_that_turns_shakes_as_the_shaft_does():
     """The pump's ring has its resonance at 73 Hz; the shaft at 49 Hz is apart from it, the stator's carrier is not."""
     assert rows("stator.speed=-20 Hz")["shaft_resonance"]["verdict"] == "pass"
