@@ -70,14 +70,17 @@ def test_start_solves_the_residual():
     assert np.max(np.abs(res)) < 1e-9 * np.max(np.abs(x))
 
 
+@pytest.mark.parametrize("side", [1.0, -3.0])
 @pytest.mark.parametrize("compressibility", [0.0, 1e-7])
-def test_derivatives_by_differences_are_the_films_own(compressibility):
-    """Three colours serve a film whose cells know their neighbours."""
+def test_derivatives_by_differences_are_the_films_own(compressibility, side):
+    """Three colours serve a film whose cells know their neighbours; unknowns of either sign and larger than their
+    scales."""
     rough, own = (film_of(6, 16, compressibility, given) for given in (False, True))
     s, f = moving_state(), own.parameters(film(), CLEARANCE)
     x, found = np.empty(96), []
     own.start(f, s, x)
-    unknowns = own.unknowns(f)
+    unknowns, x = own.unknowns(f), side * x
+    assert side > 0.0 or np.min(x) < -np.max(unknowns.scales)
     assert len(set(unknowns.colours)) == 3 and unknowns.differential.all() == (compressibility > 0)
     for one in (own, rough):
         derivatives = FilmDerivatives(one, unknowns, f)

@@ -80,9 +80,10 @@ def test_force_moments_and_flow_are_the_sum_of_marched_dams(tilt):
 
 
 @pytest.mark.parametrize("error", [1e-4, 1e-6, 1e-8])
-@pytest.mark.parametrize("tilt", [1e-5, 3e-5, 4e-5])
-def test_sectors_keep_the_error_asked_also_where_the_flow_begins_to_choke(error, tilt):
-    table = film(clearance=CLEARANCE - 1.5e-6)
+@pytest.mark.parametrize(("tilt", "clearance"), [(1e-5, 5e-6), (3e-5, 5e-6), (4e-5, 5e-6), (2.04e-5, 6.074e-6)])
+def test_sectors_keep_the_error_asked_also_where_the_flow_begins_to_choke(error, tilt, clearance):
+    """In the last of these few sectors would do for the tilt alone."""
+    table = film(clearance=clearance)
     exact, s = loads(table, tilt * 1j, error=1e-12), loads(table, tilt * 1j, error=error)
     machs = gas_dam.exit_mach(gas_dam.parameters(table, table.clearance), exact)
     assert tilt < 2e-5 or machs[0] < 1.0 == machs[1]

@@ -332,6 +332,15 @@ def test_means_over_the_asperities(x):
     assert means.open_slope(4.0 + x, 1.0, 4.0, 9.0) == 1.0
 
 
+@pytest.mark.parametrize("c", [0.0, 10.0])
+@pytest.mark.parametrize("x", [-2.0, 0.3, 0.9, 1.1])
+def test_the_continued_film_moves_as_its_slope_says(x, c):
+    """Around the floor of smooth faces, and around where rough ones are continued: both 0.5."""
+    h, step = 0.5 * x - c, 1e-6
+    ahead, behind = (means.open_height(h + side * step, c, 0.0, 0.5) for side in (1, -1))
+    assert means.open_slope(h, c, 0.0, 0.5) == pytest.approx((ahead - behind) / (2 * step), rel=1e-7)
+
+
 @pytest.mark.parametrize("x", [3.0, 4.0])
 def test_the_isotropic_factor_is_what_a_flow_around_low_asperities_asks_for(x):
     """Patir and Cheng's of h = x rms.  Of a plane field of conductances h^3, alike in every direction, second order in

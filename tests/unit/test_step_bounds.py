@@ -9,7 +9,7 @@ from scenes import CLEARANCE, NOTHING, R_I, R_O, SPEED, TILT_SCALE, film, fms, p
 from scipy.interpolate import CubicHermiteSpline
 
 from sealdyn.dynamics import segments
-from sealdyn.dynamics.extrema import empty_records, slack, track_extremes, watched_level
+from sealdyn.dynamics.extrema import LEAST, MOST, H, empty_records, slack, track_extremes, watched_level
 from sealdyn.dynamics.native import thinnest_value
 from sealdyn.dynamics.step_bounds import (
     MINUS_TILT,
@@ -30,6 +30,7 @@ from sealdyn.scene.film import Profile
 from sealdyn.scene.forces import Contact
 from sealdyn.scene.patterns import Waviness
 from sealdyn.scene.rings import AxialRunout, Rotor, Stator
+from sealdyn.scene.scene import Initial, RingStart
 from sealdyn.solvers.contract import Counts
 from sealdyn.solvers.methods import METHODS
 
@@ -89,9 +90,10 @@ def steps_of(scene, turns=3, accuracy=1e-6):
     return ready, segment, t, *segment.motion(ys, ys)
 
 
-def track(ready, segment, t, q, q_rate, swing=None, asked=True):
-    """Time of collapse or -1, records, and reach (m, m), as the compiled loop has them."""
-    model, records, reach = ready.model, empty_records(), np.full((len(t), 2), np.nan)
+def track(ready, segment, t, q, q_rate, swing=None, asked=True, known=None):
+    """Time of collapse or -1, records, and reach (m, m), as the compiled loop has them; `known` records so far."""
+    model, reach = ready.model, np.full((len(t), 2), np.nan)
+    records = empty_records() if known is None else known
     windows = np.array([[0.0, t[-1]], [t[-1] - TURN, t[-1]], [t[-1] - 2 * TURN, t[-1] - TURN]])
     fallen = track_extremes(
         t, q, q_rate, len(t), 0, len(t) - 1, segment.p, thinnest_value(model.face), model.f, np.zeros(segment.size),
@@ -210,6 +212,26 @@ def compared(given):
 @pytest.mark.parametrize("seed", SEEDS)
 def test_extremes_are_those_of_a_full_scan(seed):
     compared(steps_of(drawn(seed)))
+
+
+@pytest.mark.parametrize("measure", [H, MOST, LEAST])
+@pytest.mark.parametrize("span", [0.3, 1.5])
+def test_an_extreme_is_found_wherever_in_a_step_it_lies(span, measure):
+    """A parabola in three equal steps of so many radians of the fastest motion, its end in the second of them, a little
+    beyond what is known."""
+    moving = Initial(stator=RingStart(z=0.1 * CLEARANCE, tilt_x=0.1 * TILT_SCALE))
+    ready = prepared(fms(film=EMPTY, own=0.0, runout=0.0, initial=moving), 3 * TURN, 1e-6)
+    segment, unknown, bend = ready.segment(0), int(measure != H), -1.0 if measure == MOST else 1.0
+    step, size = span * segment.shortest_period / (2 * math.pi), 0.02 * (CLEARANCE if measure == H else TILT_SCALE)
+    t, q, q_rate = step * np.arange(4.0), np.zeros((4, segment.n)), np.zeros((4, segment.n))
+    for place in np.linspace(1.0, 2.0, 121):
+        off = t / step - place
+        q[:, unknown] = size * (10.0 + bend * off**2)
+        q_rate[:, unknown] = size * bend * 2.0 * off / step
+        exact, known = 10.0 * size + (CLEARANCE if measure == H else 0.0), empty_records()
+        known[:, measure] = exact + bend * 0.002 * size
+        found = track(ready, segment, t, q, q_rate, known=known)[1][0, measure]
+        assert found == pytest.approx(exact, abs=2.0 * slack(ready.model)[unknown])
 
 
 @pytest.mark.core

@@ -196,15 +196,17 @@ def test_parts_of_the_waves_add_up_to_them():
         assert total == pytest.approx(expected, abs=1e-10 * CLEARANCE)
 
 
-def test_leakage_of_a_wavy_film():
-    stator, rotor, at = [Waviness(5, 2 * UM)], [Waviness(3, 1 * UM, 0.4)], (0.0, 3e-5, 1e-5, 0.2, 1.0)
-    f = linear.parameters(EMPTY_FILM, CLEARANCE)
+@pytest.mark.parametrize("waves", [([Waviness(5, 2 * UM)], [Waviness(3, 1 * UM, 0.4)]), ([], [])])
+@pytest.mark.parametrize("coning", [3.125e-3, -5e-4])
+def test_leakage_and_friction_of_a_narrow_film(waves, coning):
+    (stator, rotor), at = waves, (0.0, 3e-5, 1e-5, 0.2, 1.0)
+    f = linear.parameters(replace(EMPTY_FILM, coning=coning), CLEARANCE)
     lay_waves(f, stator, rotor)
     s = gap(*at)
     s[G.VISCOSITY], s[G.OUTER_PRESSURE], s[G.SPIN_DIFFERENCE] = 5e-4, 5e5, SPEED
     linear.flow(f, s)
     theta, w, r_m = 2 * np.pi * np.arange(4096) / 4096, R_O - R_I, 0.5 * (R_I + R_O)
-    h_i, h_o = (thickness(r, theta, stator, rotor, at) for r in (R_I, R_O))
+    h_i, h_o = (thickness(r, theta, stator, rotor, at, coning) for r in (R_I, R_O))
     flow = -2 * np.pi * r_m * 5e5 / (12 * 5e-4) * np.mean(2 * (h_i * h_o) ** 2 / (w * (h_i + h_o)))
     drag = 5e-4 * SPEED * r_m**3 * 2 * np.pi * np.mean(w * np.log(h_o / h_i) / (h_o - h_i))
     assert s[G.FLOW_INNER] == pytest.approx(flow, rel=1e-12) and s[G.TORQUE] == pytest.approx(drag, rel=1e-12)
