@@ -54,6 +54,8 @@ from .run import (
 
 SMALLEST_ROOM, LARGEST_FIRST_ROOM, BLOCK = 4096, 1 << 20, 1 << 16
 SLOT, LOG = 1 << 14, 1 << 14
+# Bytes of an event beside its words: two numbers, and three words' places.
+EVENT = 160
 # Of its room a finished archive fills at least this.
 SHARE = 0.9
 
@@ -381,8 +383,9 @@ class ArchiveWriter:
             columns += len(self._fields.series) + len(self._fields.grid)
             values += instants * (1 + len(self._fields.series) * int(np.prod(self._fields.shape)))
             values += sum(self._fields.shape)
-        # Words and events are kept as they are, and in a heap.
-        return 8 * values + 4 * (words + self._log_room + len(self._log)) + 3 * self._slot + FILE + DATASET * columns
+        # Words and events are kept as they are, and in a heap; a state that was not written before stands there whole.
+        words += self._log_room + len(self._log) + len(to_json(self.state))
+        return 8 * values + 4 * words + EVENT * self._told + 3 * self._slot + FILE + DATASET * columns
 
     def _write(self, place: int, data: bytes) -> None:
         self._file.seek(place)
