@@ -11,6 +11,8 @@ import xarray
 from command import REFERENCE, SCENARIOS, finished, sealdyn, settings, short, started
 
 from sealdyn import open_archive
+from sealdyn.report.text import plain_letters
+from sealdyn.unit_names import dimension_and_factor
 
 # A plain run has one of each kind of film.
 MARKS = dict.fromkeys(("hang_up", "runup_past_threshold"), pytest.mark.slow)
@@ -84,6 +86,10 @@ def opens_for_a_stranger(path, data, status):
     wanted = {"units", "long_name", "display_unit", "display_factor"}
     assert all(wanted <= series.attrs.keys() for series in data.values())
     assert (data.h_min.attrs["display_unit"], data.h_min.attrs["display_factor"]) == ("µm", 1e6)
+    for series in (held for held in data.variables.values() if held.attrs.get("display_unit")):
+        unit, shown = (plain_letters(series.attrs[key]) for key in ("units", "display_unit"))
+        sizes = [float(dimension_and_factor(word)[1]) for word in (unit, shown)] if shown != unit else [1.0, 1.0]
+        assert series.attrs["display_factor"] == pytest.approx(sizes[0] / sizes[1], rel=1e-12)
     assert data.attrs["status"] == status and "[film]" in data.attrs["scenario"]
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from command import SCENARIOS, sealdyn
 
-from sealdyn.archive import only_writer, partial_path
+from sealdyn.archive import files, only_writer, partial_path
 from sealdyn.scenario.motion_files import whole_file
 
 SEAL = SCENARIOS / "fms_reference.toml"
@@ -77,6 +77,17 @@ def test_little_memory_is_said(most, verb, tmp_path):
     """In place of what libraries and the compiler end the process with: words of their own, or none."""
     code, lines = told(verb, SEAL, *SHORT[:-1], cwd=tmp_path, limit=(resource.RLIMIT_AS, most))
     assert code == 4 and len(lines) == 1 and "ulimit -v" in lines[0]
+
+
+def test_a_process_that_reads_apart_has_bounds_of_its_own(tmp_path, monkeypatch):
+    """Memory, work, and no image of it where it crashes."""
+    (tmp_path / "bounded.py").write_text(
+        "import resource\nfrom sealdyn.archive.files import bound_this_process\n\nbound_this_process()\n"
+        "kinds = resource.RLIMIT_AS, resource.RLIMIT_CORE, resource.RLIMIT_CPU\n"
+        "print(*(resource.getrlimit(kind)[0] for kind in kinds))\n"
+    )
+    monkeypatch.syspath_prepend(tmp_path)
+    assert list(map(int, files.read_apart("bounded").stdout.split())) == [files.MEMORY, 0, files.WORK]
 
 
 def test_memory_for_what_is_not_computed(tmp_path):

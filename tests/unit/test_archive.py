@@ -144,6 +144,11 @@ def test_rows_wait_in_memory_until_the_interval_or_the_row_limit(tmp_path):
     assert not list(tmp_path.iterdir())
     run.append(rows(99, 101))
     assert read_info(path)["rows"] == 101
+    # So do those that come later.
+    run.append(rows(101, 200))
+    assert read_info(path)["rows"] == 101
+    run.append(rows(200, 201))
+    assert read_info(path)["rows"] == 201
     run.close()
 
 
