@@ -10,7 +10,7 @@ import pytest
 
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import read_scenario
-from sealdyn.scenario.settings import axis, si_unit, study_settings, values_in_si
+from sealdyn.scenario.settings import MOST, axis, si_unit, study_settings, values_in_si
 from sealdyn.studies import (
     contact_onset,
     failures,
@@ -103,6 +103,14 @@ def test_units_of_another_kind_are_not_converted(words):
 )
 def test_values_come_in_si(words, unit, found):
     assert values_in_si(scenario(), words, unit, "study.rub.values") == pytest.approx(found, rel=1e-12)
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_whole_numbers_are_of_a_size_that_can_be_counted(sign):
+    assert settings(rub, ramp=sign * MOST).ramp == sign * MOST
+    with pytest.raises(ScenarioError) as refused:
+        settings(rub, ramp=sign * (MOST + 1))
+    assert refused.value.key == "study.rub.ramp" and str(sign * (MOST + 1)) in refused.value.found
 
 
 @pytest.mark.parametrize("words", ["10 um:20 um:3", "1 bar", "3 foo", "much", "1 foo:2 foo:3", "1 rad, 2 m"])
