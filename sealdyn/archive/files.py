@@ -158,12 +158,13 @@ def read_apart(module: str, *words: str) -> subprocess.CompletedProcess | None:
 
 def bound_this_process() -> None:
     """Bound memory and work of the process in which `read_apart` reads, where the system can."""
-    with suppress(ImportError, ValueError, OSError):
+    with suppress(ImportError):
         import resource
 
-        resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-        resource.setrlimit(resource.RLIMIT_CPU, (WORK, WORK + 1))
+        bounds = {"AS": (MEMORY, MEMORY), "CORE": (0, 0), "CPU": (WORK, WORK + 1)}
+        for kind, bound in bounds.items():
+            with suppress(ValueError, OSError):
+                resource.setrlimit(getattr(resource, f"RLIMIT_{kind}"), bound)
 
 
 def must_have_an_end(path: str | os.PathLike) -> None:
