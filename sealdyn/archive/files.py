@@ -41,16 +41,8 @@ _sound, _writing = set(), set()
 
 # What reading a file that this program did not write, or somebody has changed, may raise.
 READING_ERRORS = (
-    KeyError,
-    OSError,
-    ValueError,
-    TypeError,
-    AttributeError,
-    IndexError,
-    RuntimeError,
-    ArithmeticError,
-    EOFError,
-)
+    KeyError, OSError, ValueError, TypeError, AttributeError, IndexError, RuntimeError, ArithmeticError, EOFError,
+)  # fmt: skip
 # A seal, what a run goes on from, and texts of a study beside the root attributes.
 SEAL, STATE, TEXTS = "seal", "restart", ("json/answer", "json/panels")
 # What a full or failing disk says.
@@ -161,10 +153,10 @@ def bound_this_process() -> None:
     with suppress(ImportError):
         import resource
 
-        bounds = {"AS": (MEMORY, MEMORY), "CORE": (0, 0), "CPU": (WORK, WORK + 1)}
-        for kind, bound in bounds.items():
+        kinds = resource.RLIMIT_AS, resource.RLIMIT_CORE, resource.RLIMIT_CPU
+        for kind, *bound in zip(kinds, (MEMORY, 0, WORK), (MEMORY, 0, WORK + 1), strict=True):
             with suppress(ValueError, OSError):
-                resource.setrlimit(getattr(resource, f"RLIMIT_{kind}"), bound)
+                resource.setrlimit(kind, tuple(bound))
 
 
 def must_have_an_end(path: str | os.PathLike) -> None:
