@@ -32,8 +32,8 @@ SHORTENED = {
     "rub_chaotic": ["run.turns=15"],
     "hang_up": ["run.turns=3"], "rub": ["run.turns=50"], "fms_reference": ["run.turns=30"],
     "fmr_reference": ["run.turns=30"], "fmsr_both_flexible": ["run.turns=30"], "free_precession": ["run.turns=30"],
-    "turning_pads": ["run.turns=1"], "dry_gas_seal": ["run.turns=1"], "dry_gas_start": ["run.turns=3", "run.accuracy=1e-3"],
-    "upstream_pumping": ["run.turns=0.5", "run.accuracy=1e-3"],
+    "turning_pads": ["run.turns=1"], "dry_gas_seal": ["run.turns=1"],
+    "dry_gas_start": ["run.turns=3", "run.accuracy=1e-3"], "upstream_pumping": ["run.turns=0.5", "run.accuracy=1e-3"],
     # Where they leave the shaft: who rides on it moves as it does.
     "lip_reference": ["run.turns=2", "shaft.speed=6000 rpm", "lip.preload=2", "lip.garter_tension=0"],
     "circumferential_reference": ["run.turns=2", "shaft.speed=12000 rpm"],
