@@ -80,15 +80,14 @@ def scenarios():
     scenes = json.loads((GALLERY / "work_precision_all.json").read_text())["scenes"]
     yield "scenario", *(f"at {row['error']:.0e}" for row in scenes[0]["fastest"])
     for scene in (one for one in scenes if any(row["method"] for row in one["fastest"])):
-        yield f"`{scene['name']}`", *map(winner, scene["fastest"])
+        yield scene["name"], *map(winner, scene["fastest"])
 
 
 def winner(row: dict) -> str:
-    """Method, how many times faster than the next, how many times faster than DOP853; "-" where none is known; the
-    method alone where no other got there."""
-    if row["method"] is None or row["next"] is None:
-        return SHORT.get(row["method"], "-")
-    return f"{SHORT[row['method']]}, {number(row['factor_next'])}, {number(row['factor_dop853'])}"
+    """Method, how many times faster than the next, how many times faster than DOP853, as far as these got there; "-"
+    where none is known."""
+    factors = (row.get("factor_next"), row.get("factor_dop853"))
+    return ", ".join([SHORT.get(row["method"], "-"), *(number(factor) for factor in factors if factor)])
 
 
 def honesty():

@@ -19,7 +19,7 @@ MOST, LEAST, LEAST_OF_MODELS = 1e3, 1e-16, 1e-12
 TITLES = {"end": "error at the end", "over_time": "largest error", "steady": "steady error"}
 SHORT = {"adams": "Adams", "bdf": "BDF", "bdf2": "BDF 2", "ida": "IDA", "dop853": "DOP853", "rk45": "RK45",
          "lsoda": "LSODA", "radau": "Radau", "newmark": "Newmark", "generalised_alpha": "gen.-α",
-         "midpoint": "midpoint", "expm": "expm", "trbdf2": "TR-BDF2", "scipy_bdf": "SciPy BDF", "ida2": "IDA, order 2",
+         "midpoint": "midpoint", "expm": "expm", "trbdf2": "TR-BDF2", "scipy_bdf": "SciPy BDF", "ida2": "IDA 2",
          "ida1": "implicit Euler (IDA)", "segregated": "segregated",
          "quasi_static": "quasi-static"}  # fmt: skip
 # Every method: the house's own in full lines, SciPy's and others dashed, fixed steps dotted.
