@@ -153,10 +153,13 @@ def bound_this_process() -> None:
     with suppress(ImportError):
         import resource
 
-        kinds = resource.RLIMIT_AS, resource.RLIMIT_CORE, resource.RLIMIT_CPU
-        for kind, *bound in zip(kinds, (MEMORY, 0, WORK), (MEMORY, 0, WORK + 1), strict=True):
+        for kind, bound in (
+            (resource.RLIMIT_AS, (MEMORY, MEMORY)),
+            (resource.RLIMIT_CORE, (0, 0)),
+            (resource.RLIMIT_CPU, (WORK, WORK + 1)),
+        ):
             with suppress(ValueError, OSError):
-                resource.setrlimit(kind, tuple(bound))
+                resource.setrlimit(kind, bound)
 
 
 def must_have_an_end(path: str | os.PathLike) -> None:

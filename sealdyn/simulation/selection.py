@@ -137,12 +137,7 @@ def _prepared_radial(scenario):
     model = RadialModel(scenario.scene, settings.accuracy)
     run = RadialRun(model, model.time_of(settings.turns) if settings.duration is None else settings.duration)
     interval, count = sampling(run.duration, largest_value(scenario.scene.shaft.speed), settings)
-    method, why = settings.solver, "asked for"
-    if method == "auto":
-        followers = model.followers
-        stiff = followers.damping / followers.mass > STIFF_FOLLOWER * model.reference_rate
-        method = "radau" if stiff else "dop853"
-        why = "every change of contact is a new start: a one-step method" + (", and the lip is stiff" if stiff else "")
+    method, why = (settings.solver, "asked for") if settings.solver != "auto" else choose_method(run)
     run.start = Start("riding", "all followers on the shaft, where that pulls nowhere")
     return run, Plan("", method, None, run.start, why, interval, count, last=True)
 
@@ -233,9 +228,13 @@ def _why_not_linear(scene, radial: RunState) -> str | None:
 
 
 def choose_method(run: RunState, exact: bool = True) -> tuple[str, str]:
-    """The method for a run (RunState), by its name in METHODS, and a sentence why; the `exact` motion of a linear film,
-    where it has one, or what a compiled loop of many runs integrates."""
+    """The method for a run (RunState, RadialRun), by its name in METHODS, and a sentence why; the `exact` motion of a
+    linear film, where it has one, or what a compiled loop of many runs integrates."""
     model = run.model
+    if isinstance(model.scene, RadialScene):
+        stiff = model.followers.damping / model.followers.mass > STIFF_FOLLOWER * model.reference_rate
+        why = "every change of contact is a new start: a one-step method" + (", and the lip is stiff" if stiff else "")
+        return "radau" if stiff else "dop853", why
     if model.interface.film.settle is not None:
         return "trbdf2", "cells that tear and fill: TR-BDF2, the film settled at each stage"
     if model.unknowns.massless:

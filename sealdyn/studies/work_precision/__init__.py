@@ -17,7 +17,6 @@ from pydantic import Field
 from ...answers import Answer, Table, table_of
 from ...dynamics.intervals import largest_value
 from ...scenario.reader import with_values
-from ...scene.radial import RadialScene
 from ...scene.scene import SceneError
 from ...simulation.film_error import reynolds_comparison
 from ...simulation.result import libraries
@@ -27,7 +26,7 @@ from ...solvers.own_methods import collocation
 from ...status import Status
 from .. import Info
 from . import film_ladder
-from .observation import WHERE, errors, observe, worst
+from .observation import WHERE, errors, is_radial, observe, worst
 
 NAMES = {
     "adams": "CVODE Adams", "bdf": "CVODE BDF", "bdf2": "CVODE BDF order 2", "ida": "IDA", "dop853": "SciPy DOP853",
@@ -102,7 +101,7 @@ class Settings:
 
 def run(scenario, settings, tools) -> Answer:
     """Methods, their judge, models, and who is fastest at which accuracy."""
-    run, radial = ready(scenario), _is_radial(scenario)
+    run, radial = ready(scenario), is_radial(scenario.scene)
     if scenario.run.start == "auto" and not radial:
         # All methods and films begin alike.
         scenario = with_values(scenario, {"run.start": run.start.taken})
@@ -131,7 +130,7 @@ def run(scenario, settings, tools) -> Answer:
         rungs, unjudged = film_ladder.compare(scenario, settings.samples, settings.longest, settings.repeats, exact)
     answer = {
         "where": settings.where,
-        "scene": {"turns": _turns(run), "duration": run.duration, "method": _own_method(scenario, run)},
+        "scene": {"turns": _turns(run), "duration": run.duration, "method": choose_method(run)[0]},
         "judges": judges,
         "judge_error": band,
         "methods": methods,
@@ -145,18 +144,9 @@ def run(scenario, settings, tools) -> Answer:
     return Answer(answer, _found(answer), _tables(answer), notes=_notes(answer, settings))
 
 
-def _is_radial(scenario) -> bool:
-    return isinstance(scenario.scene, RadialScene)
-
-
-def _own_method(scenario, run) -> str:
-    """The method that a run takes by itself."""
-    return prepare_run(scenario)[1].method if _is_radial(scenario) else choose_method(run)[0]
-
-
 def _can(run, method: str) -> bool:
     """Whether a method is one for this run; a massless ring shows what becomes of the others."""
-    if isinstance(run.model.scene, RadialScene):
+    if is_radial(run.model.scene):
         # Its equations have no residual form, and change with every contact.
         return method not in ("ida", "expm", "trbdf2", *OF_FILMS)
     own = run.model.unknowns.film_unknowns is not None
@@ -176,11 +166,11 @@ def ready(scenario, tolerance: float = TIGHT):
     """A fresh run whose film and gap are evaluated far more accurately than any judged run.  Coulomb friction
     fades over a band that follows the accuracy, so there the scenario's own is kept.  The steps of a radial seal are no
     longer than what is interpolated between them allows: its accuracy is the `tolerance`."""
-    if _is_radial(scenario):
+    if is_radial(scenario.scene):
         accuracy = min(max(tolerance, TIGHT), LOOSEST)
-        return prepare_run(with_values(scenario, {"run.accuracy": accuracy, "run.solver": "auto"}))[0]
-    seals = (scenario.scene.stator.secondary_seal, scenario.scene.rotor.secondary_seal)
-    accuracy = scenario.run.accuracy if any(s and s.law == "coulomb" for s in seals) else TIGHT
+    else:
+        seals = (scenario.scene.stator.secondary_seal, scenario.scene.rotor.secondary_seal)
+        accuracy = scenario.run.accuracy if any(s and s.law == "coulomb" for s in seals) else TIGHT
     run, *_ = prepare_run(with_values(scenario, {"run.accuracy": accuracy, "run.solver": "auto"}))
     return run
 
@@ -200,16 +190,15 @@ def reference(scenario, samples: int, limit: float):
     Judges in order: collocation at Gauss or at Radau nodes, whichever suits the scene, then the matrix exponential or
     DOP853 at 1e-13 where they can, then the other nodes.  Of a film with unknowns of its own its method far sharper
     than asked, then SciPy's Radau where every unknown has a rate, or the same again."""
-    run, radial = ready(scenario), _is_radial(scenario)
-    if not radial and run.model.unknowns.film_unknowns:
-        return _by_itself(scenario, choose_method(run)[0], samples, limit)
-    stiff = _own_method(scenario, run) in ("bdf", "radau")
+    run = ready(scenario)
+    segment, method = run.segment(0), choose_method(run)[0]
+    if segment.film.stop > segment.film.start:
+        return _by_itself(scenario, method, samples, limit)
+    stiff = method in ("bdf", "radau")
     own = ["radau_nodes", "gauss"] if stiff else ["gauss", "radau_nodes"]
-    if radial:
-        others = [("dop853", REFERENCE_METHODS["dop853"], 1e-13)]
-    elif run.model.unknowns.linear and run.model.unknowns.constant and not run.model.unknowns.has_residual_form:
+    if _can(run, "expm"):
         others = [("expm", REFERENCE_METHODS["expm"], 1e-13)]
-    elif stiff or run.model.unknowns.has_residual_form:
+    elif stiff or segment.has_residual_form:
         others = []
     else:
         others = [("dop853", REFERENCE_METHODS["dop853"], 1e-13)]

@@ -7,10 +7,9 @@ from dataclasses import asdict
 import numpy as np
 
 from ...dynamics import modes
-from ...films import film_named, film_names
+from ...films import film_named, film_names, film_of
 from ...scenario.reader import with_values
 from ...scene.film import Coefficients
-from ...scene.fluid import GasReynolds
 from ...scene.patterns import grooves_of, waves_of
 from ...simulation.selection import prepare_run
 from ...solvers.contract import tolerance_for
@@ -60,8 +59,10 @@ def _grids(scenario, name: str) -> list[tuple[str, dict]]:
 
 def _columns(scenario) -> list[tuple[str, dict]]:
     """The same of the film over grooves, which no other film sees."""
-    name = prepare_run(with_values(scenario, AUTO))[0].model.interface.film.name
-    columns = (getattr(scenario.scene.film, name) or GasReynolds()).columns
+    # Loaded for grooves only.
+    from ...films._grooved.cells import options_of
+
+    name, columns = film_of(scenario.scene).name, options_of(scenario.scene.film).columns
     tables = {"half the cells": columns // 2, "its cells": columns, TWICE: 2 * columns}
     return [(f"{name.replace('_', ' ')} film, {words}", {"film.model": name, f"film.{name}.columns": count})
             for words, count in tables.items()]  # fmt: skip

@@ -87,13 +87,18 @@ class _Stopwatch:
             yield block
 
 
+def is_radial(scene) -> bool:
+    """Whether a scene is of a radial seal, not of a face seal."""
+    return isinstance(scene, RadialScene)
+
+
 def observe(run, steps, method: str, tolerance: float, limit: float = math.inf, samples: int = 400) -> Observed:
     """Integrate a run with a method's generator `steps` (contract of solvers/contract.py) and look at it.
 
     `limit` (s) of processor time; `samples` intervals over the run.  The gap is watched and contacts, sticking and
     collapse are found as in any run, but the clock runs only inside the method.
     """
-    radial = isinstance(run.model.scene, RadialScene)
+    radial = is_radial(run.model.scene)
     watch, sink = _Stopwatch(steps, limit), (RadialSampler if radial else Sampler)(run.duration / samples)
     with np.errstate(all="ignore"):
         outcome = solve(run, method, run.model.accuracy, sink, steps=watch, tolerance=tolerance)
