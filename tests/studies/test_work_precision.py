@@ -342,6 +342,8 @@ def test_followers_of_a_radial_seal_that_leave_the_shaft(tmp_path):
     for name in ("dop853", "radau"):
         row = answer["methods"][name]
         assert row["status"][-1] == "ok" and 0 < row["error"]["over_time"][-1] < 1e-6
+        # Steps are bounded by the accuracy that is asked, not by the judge's.
+        assert row["rhs"][0] < 0.7 * row["rhs"][-1]
     assert text_trouble(drawn(chart, tmp_path / "w.h5", tmp_path / "w.png"))[1] == []
 
 
