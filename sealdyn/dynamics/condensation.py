@@ -1,7 +1,7 @@
 """A film linearised: derivatives by the gap, and what a film with unknowns answers to a small motion of the gap, its
 unknowns eliminated (dynamic condensation)."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -64,11 +64,6 @@ class Slopes(NamedTuple):
     damping: np.ndarray
     stiffness_error: np.ndarray
     damping_error: np.ndarray
-
-
-def linearise(wrench, f: np.ndarray, s: np.ndarray, steps: tuple[float, float, float, float]):
-    """Stiffness and damping matrices (3, 3) of any film about a gap state, on (dz, g_x, g_y)."""
-    return film_slopes(wrench, f, s, steps)[:2]
 
 
 def film_slopes(wrench, f: np.ndarray, s: np.ndarray, steps: tuple[float, float, float, float]) -> Slopes:
@@ -181,13 +176,17 @@ class LinearFilm:
         sectors, each = self.around or (1, len(self.scales))
         if sectors < EVEN:
             return self._mean_over_a_turn(speed)
-        back = (turned := _harmonics(sectors, each, 1)).T
-        by_x, by_rate = ((back @ part @ turned).tocsc() for part in (self.by_x, self.by_rate))
+        found = self._combined(_harmonics(sectors, each, 1), np.tile(self.scales[:each], 3))
         # i on cosine and sine of each unknown.
         ahead = csc_array(kron(csc_array([[0.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]), eye_array(each)))
+        return replace(found, by_x=(found.by_x - speed * found.by_rate @ ahead).tocsc())
+
+    def _combined(self, turned, scales) -> "LinearFilm":
+        """The same film in the combinations `turned` (n, m) of its unknowns, their `scales` (m,)."""
+        back = turned.T
         return LinearFilm(
-            (by_x - speed * by_rate @ ahead).tocsc(), by_rate, back @ self.by_gap, back @ self.by_gap_rate,
-            self.force_by_x @ turned, self.force_by_gap, self.force_by_gap_rate, np.tile(self.scales[:each], 3),
+            (back @ self.by_x @ turned).tocsc(), (back @ self.by_rate @ turned).tocsc(), back @ self.by_gap,
+            back @ self.by_gap_rate, self.force_by_x @ turned, self.force_by_gap, self.force_by_gap_rate, scales,
         )  # fmt: skip
 
     def _mean_over_a_turn(self, speed: float) -> "LinearFilm":
@@ -217,14 +216,7 @@ class LinearFilm:
         """The same film in those combinations of its unknowns that a gap moves, where its sectors are alike; itself
         where none are."""
         turned = self.combinations
-        if turned is None:
-            return self
-        back = turned.T
-        return LinearFilm(
-            (back @ self.by_x @ turned).tocsc(), (back @ self.by_rate @ turned).tocsc(), back @ self.by_gap,
-            back @ self.by_gap_rate, self.force_by_x @ turned, self.force_by_gap, self.force_by_gap_rate,
-            self.scales[turned.indices[turned.indptr[:-1]]],
-        )  # fmt: skip
+        return self if turned is None else self._combined(turned, self.scales[turned.indices[turned.indptr[:-1]]])
 
     @cached_property
     def combinations(self):
@@ -290,12 +282,6 @@ KINDS = (
 STEP = 1e-4
 
 
-def kernels_of(film: Film) -> np.ndarray:
-    """Addresses (5,) of a film's kernels."""
-    kernels = film.wrench, film.residual, film.jacobian, film.wrench_jacobian, film.settle
-    return np.array([Value(k, kind).address if k else 0 for k, kind in zip(kernels, KINDS, strict=True)])
-
-
 @outer_kernel()
 def residual_by_unknowns(kernels, f, s, x, x_rate, alpha, scales, indptr, indices, colours, data):
     """d residual / d x + alpha d residual / d x_rate into `data` (nnz,), the values of the pattern `indptr` (n + 1,),
@@ -346,7 +332,9 @@ class FilmDerivatives:
 
     def __init__(self, film: Film, unknowns: FilmUnknowns, f: np.ndarray):
         self.film, self.unknowns, self.f = film, unknowns, f
-        self.kernels, self.scales = kernels_of(film), np.ascontiguousarray(unknowns.scales, dtype=float)
+        kernels = film.wrench, film.residual, film.jacobian, film.wrench_jacobian, film.settle
+        self.kernels = np.array([Value(k, kind).address if k else 0 for k, kind in zip(kernels, KINDS, strict=True)])
+        self.scales = np.ascontiguousarray(unknowns.scales, dtype=float)
         pattern = unknowns.pattern
         self.pattern = tuple(part.astype(np.int64) for part in (pattern.indptr, pattern.indices, unknowns.colours))
 

@@ -32,7 +32,7 @@ from ..scene.excitation import Housing
 from ..scene.film import Coefficients, cells_of, coned
 from ..scene.patterns import grooves_of, waves_of
 from ..scene.scene import Closing, Initial, SceneError, with_values
-from .condensation import NOISE, FilmDerivatives, LinearFilm, Slopes, film_slopes, linearise
+from .condensation import NOISE, FilmDerivatives, LinearFilm, Slopes, film_slopes
 from .equilibrium import settle
 from .imposed_motion import asperity_steps, rest_state
 from .intervals import constant_and_slope, spins
@@ -187,10 +187,6 @@ class Interface:
         lay_surfaces(f, self.scene)
         return plain.wrench, f
 
-    def linearised(self, interval=None, mean_spin=None, shift=0.0, omega=0.0, pace=None, film=None):
-        """Stiffness and damping matrices (3, 3) of `slopes`."""
-        return self.slopes(interval, mean_spin, shift, omega, pace, film)[:2]
-
     def slopes(self, interval=None, mean_spin=None, shift=0.0, omega=0.0, pace=None, film=None) -> Slopes:
         """Stiffness and damping of film and asperities about the aligned rest state and how well they are known,
         arguments as `rest_state`; of a film with unknowns at the frequency `omega` (rad/s), of its `linear_film` if
@@ -243,11 +239,11 @@ class Interface:
         if self.film.matrices is not None:
             stiffness, damping = self.film.matrices(self.f, s)
         elif self.unknowns is None:
-            return linearise(self.wrench, self._fine, s, steps)
+            return film_slopes(self.wrench, self._fine, s, steps)[:2]
         else:
             stiffness, damping = self.linear_film(s, steps).matrices(omega)
         if self.contact is not None:
-            stiffness = stiffness + linearise(self._asperities_alone, self._fine, s, steps)[0]
+            stiffness = stiffness + film_slopes(self._asperities_alone, self._fine, s, steps).stiffness
         return stiffness, damping
 
     def _asperities_alone(self, f, s):
@@ -271,8 +267,12 @@ def lender(scene, film):
 
 
 def prepared(scene, film):
-    """The `Film` table of a scene as its `film` takes it."""
-    return with_cells(scene, film) if film.prepared is not None else scene.film
+    """The `Film` table of a scene as its `film` takes it: with enough cells for what it is asked for; cells that are
+    given stay.  Raises SceneError where the seal has no balance, and for more cells than are looked for."""
+    if film.prepared is None:
+        return scene.film
+    given = film.cells_are_given is None or film.cells_are_given(scene.film)
+    return film.prepared(scene) if given else _searched(Asked(scene, film))
 
 
 def opening_law(scene, film=None):
@@ -399,14 +399,6 @@ class Asked:
 
     def __hash__(self):
         return hash(self.words)
-
-
-def with_cells(scene, film):
-    """The `Film` table of a scene with enough cells for what `film` is asked for; cells that are given stay.
-    Raises SceneError where the seal has no balance, and for more cells than are looked for."""
-    table = film.prepared(scene)
-    given = film.cells_are_given is None or film.cells_are_given(scene.film)
-    return table if given else _searched(Asked(scene, film))
 
 
 @lru_cache(maxsize=REMEMBERED)

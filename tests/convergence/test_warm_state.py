@@ -63,7 +63,7 @@ def test_film_coefficients_are_those_of_the_warm_film():
     found = warming(scene_of())
     (state,) = found.states
     for rise, clearance, expected in ((0.0, found.cold_state.clearance, 0), (state.rise, state.clearance, 1)):
-        k, d = Interface(found.at(rise, clearance), 1e-10).linearised()[:2]
+        k, d = Interface(found.at(rise, clearance), 1e-10).slopes()[:2]
         assert (k[0, 0], k[1, 1], d[1, 1]) == pytest.approx(COEFFICIENTS[expected], rel=TOLERANCE)
 
 

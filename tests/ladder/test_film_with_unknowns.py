@@ -218,12 +218,12 @@ def test_start_is_consistent(scene, compressibility):
 
 
 def test_stiffness_and_damping_tend_to_the_radial_films_and_hang_on_no_frequency():
-    exact = Interface(fms(), 1e-13).linearised()
+    exact = Interface(fms(), 1e-13).slopes()[:2]
     errors = []
     for cells in (16, 32, 64):
         interface = Interface(fms(), 1e-13, film_of(cells, 16))
-        found = interface.linearised()
-        for fast in interface.linearised(omega=5e3), interface.linearised(omega=1.0):
+        found = interface.slopes()[:2]
+        for fast in interface.slopes(omega=5e3)[:2], interface.slopes(omega=1.0)[:2]:
             assert fast[0] == pytest.approx(found[0], rel=1e-7, abs=1e-7 * found[0][1, 1])
             assert fast[1] == pytest.approx(found[1], rel=1e-6, abs=1e-6 * found[1][1, 1])
         errors.append([abs(a[i] / b[i] - 1) for a, b in zip(found, exact, strict=True) for i in ((0, 0), (1, 1))])
@@ -250,7 +250,7 @@ def test_stiffness_and_damping_of_a_compressible_film_hang_on_the_frequency(omeg
     exact = squeezed_compressible_film(omega, compressibility)
     errors = []
     for cells in (24, 48, 96):
-        k, d = Interface(flat, 1e-13, film_of(cells, 4, compressibility)).linearised(omega=omega)
+        k, d = Interface(flat, 1e-13, film_of(cells, 4, compressibility)).slopes(omega=omega)[:2]
         errors.append(abs(k[0, 0] + 1j * omega * d[0, 0] - exact) / abs(exact))
     orders = np.log2(np.array(errors[:-1]) / errors[1:])
     assert np.all((orders > 1.7) & (orders < 2.3)) and errors[-1] < 3e-3, (orders, errors)
@@ -269,6 +269,6 @@ def test_coefficients_study_shows_them_over_the_frequency():
 
 def test_damping_at_no_frequency_is_the_limit():
     interface = Interface(fms(), 1e-13, film_of(12, 8, 1e-7))
-    still, slow = interface.linearised(), interface.linearised(omega=1.0)
+    still, slow = interface.slopes()[:2], interface.slopes(omega=1.0)[:2]
     for one, other in zip(still, slow, strict=True):
         assert one == pytest.approx(other, rel=1e-5, abs=1e-5 * abs(one[1, 1]))

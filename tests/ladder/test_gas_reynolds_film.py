@@ -55,8 +55,8 @@ def test_a_gas_that_hardly_gives_way_is_the_radial_film():
 @pytest.mark.parametrize("omega", [0.0, 500.0, 3000.0])
 def test_a_gas_that_hardly_gives_way_has_the_radial_films_stiffness_and_damping(omega):
     film, liquid = both()
-    found = Interface(fms(film=film), 1e-12).linearised(omega=omega)
-    exact = Interface(fms(film=liquid), 1e-12).linearised()
+    found = Interface(fms(film=film), 1e-12).slopes(omega=omega)[:2]
+    exact = Interface(fms(film=liquid), 1e-12).slopes()[:2]
     # Measured up to 6e-5.
     for mine, other in zip(found, exact, strict=True):
         for place in ((0, 0), (1, 1), (2, 2)):

@@ -11,7 +11,7 @@ from scipy.linalg import eig
 from sealdyn.analysis.sources import lebeck_1979, lebeck_1979_plateaus
 from sealdyn.dynamics.film_modes import even
 from sealdyn.dynamics.imposed_motion import rest_state
-from sealdyn.dynamics.interface import Interface, flow_at_rest, opening_parts, with_cells
+from sealdyn.dynamics.interface import Interface, flow_at_rest, opening_parts, prepared
 from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.run_state import RunState
 from sealdyn.faces.geometry import CONTACT_FORCE, CONTACT_TORQUE, FLOW_INNER, FLOW_OUTER, FORCE, TORQUE
@@ -271,10 +271,10 @@ def test_cells_that_would_take_minutes_are_refused_with_what_they_cost(accuracy)
     """Before they are laid, unless they are asked for by their number."""
     scene = lebeck().scene
     with pytest.raises(SceneError) as error:
-        with_cells(replace(scene, film=replace(scene.film, reynolds=Reynolds(grid_accuracy=accuracy))), REYNOLDS_FILM)
+        prepared(replace(scene, film=replace(scene.film, reynolds=Reynolds(grid_accuracy=accuracy))), REYNOLDS_FILM)
     assert error.value.key == "film.reynolds.grid_accuracy" and "GB" in error.value.found
     given = replace(scene.film, reynolds=Reynolds(cells_r=60, cells_theta=400, grid_accuracy=accuracy))
-    assert with_cells(replace(scene, film=given), REYNOLDS_FILM).reynolds.cells_r == 60
+    assert prepared(replace(scene, film=given), REYNOLDS_FILM).reynolds.cells_r == 60
 
 
 def test_the_friction_of_a_standing_shaft_asks_for_no_cells():
@@ -282,4 +282,4 @@ def test_the_friction_of_a_standing_shaft_asks_for_no_cells():
     scene = lebeck().scene
     film = replace(scene.film, reynolds=Reynolds(grid_accuracy=0.05))
     standing = replace(scene, film=film, shaft=replace(scene.shaft, speed=0.0))
-    assert with_cells(standing, REYNOLDS_FILM).reynolds.cells_r <= 24
+    assert prepared(standing, REYNOLDS_FILM).reynolds.cells_r <= 24
