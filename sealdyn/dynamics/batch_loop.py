@@ -219,7 +219,7 @@ def _hand_over(cvode, runs, stretch, t, ys, q, q_rate, count, begin, end, room, 
         return False
     whole[END] += found
     accelerations, unused = np.empty_like(q), np.empty((found, n))
-    for k in range(max(0, begin - OVERLAP), min(count, end + OVERLAP + 1)):
+    for k in range(count):
         call_rates(cvode.words[FUNCTION], t[k], ys[k].ctypes.data, slopes.ctypes.data, cvode.words[DATA])
         for j in range(n):
             accelerations[k, j] = slopes[runs.rate_places[j]]

@@ -17,7 +17,7 @@ from ..numerics.kernel import inner_kernel, outer_kernel
 from ..scene.forces import film_in_words, limit_in_words
 from ..solvers.contract import Cause, Stop
 from .equations import LEG_AT, kinematics
-from .imposed_motion import coning_at
+from .imposed_motion import PER_RING, coning_at
 from .native import thinnest_value
 from .step_bounds import (
     FROM,
@@ -247,8 +247,8 @@ def track_extremes(
         for j in range(3):
             imposed[0, j], imposed[0, 3 + j], ends[0, j] = imposed[1, j], imposed[1, 3 + j], ends[1, j]
         if placed != k:
-            imposed_gap(t[k], p, imposed[0])
-        imposed_gap(t[k + 1], p, imposed[1])
+            imposed_gap(t[k], p, w[: 2 * PER_RING], imposed[0])
+        imposed_gap(t[k + 1], p, w[: 2 * PER_RING], imposed[1])
         add_imposed(motion, imposed, span)
         begins, ended, placed = seen_end == k, False, k + 1
         if wavy:
@@ -412,10 +412,8 @@ class ExtremaTracker:
         return np.concatenate([self.records.ravel(), self.seen.ravel()])
 
     def restore(self, state):
-        """Go on from `state`; that of earlier versions knows no samples."""
-        kept = np.array(state, dtype=float).reshape(-1, *self.records.shape)
-        self.records[:] = kept[0]
-        self.seen[:] = kept[1] if len(kept) > 1 else empty_records()
+        """Go on from `state`."""
+        self.records[:], self.seen[:] = np.reshape(state, (2, WINDOWS, RECORD))
 
     def _cause(self) -> Cause:
         return Cause.FILM_COLLAPSED if self.model.contact is None else Cause.ASPERITIES_CRUSHED

@@ -19,8 +19,7 @@ from ..faces.film_thickness import wave_rows
 from ..faces.geometry import CLEARANCE, INNER_RADIUS, OUTER_RADIUS, smallest_gap
 from ..numerics.kernel import inner_kernel
 from .equations import AT_TILT, AT_Z, FLOATS, LEG_AT, RING
-from .imposed_motion import AXIAL, MOTION_AT, OSCILLATOR_COUNT, OSCILLATORS, OWN, ROW, SWEEPS_AT, TURNING
-from .swept_motion import AXIAL_SHARE, SWEEP_ROW, motion_at, piece_at, sweep_at
+from .imposed_motion import AXIAL, OWN, PER_RING, imposed_state
 
 # The three measures that are made small: the film thickness, minus the squared tilt, the squared tilt (smooth through
 # zero).
@@ -89,53 +88,15 @@ def floating_motion(t, q_all, q_rate_all, k, p, motion):
 
 
 @inner_kernel()
-def imposed_gap(tau, p, at):
+def imposed_gap(tau, p, c, at):
     """What the rings that do not float add to the gap at segment time tau (s): axial (m) and tilt (rad, rad), then
-    their rates, into `at` (6,); imposed_state of imposed_motion.py gives the same to each ring."""
-    for i in range(len(at)):
-        at[i] = 0.0
-    for ring in range(2):
-        place = int(p[LEG_AT + MOTION_AT + ring])
-        if place > 0 and p[RING * ring + FLOATS] == 0.0:
-            place += LEG_AT
-            piece, sign = piece_at(tau, p, place), 1.0 - 2.0 * ring
-            for part in range(3):
-                x, x_rate, _ = motion_at(tau, p, place, piece, part)
-                at[part] += sign * x
-                at[3 + part] += sign * x_rate
-    place = int(p[LEG_AT + SWEEPS_AT])
-    if place > 0 and p[FLOATS] == 0.0:
-        place += LEG_AT
-        for k in range(int(p[place])):
-            row = place + 1 + SWEEP_ROW * k
-            x, x_rate, _ = sweep_at(tau, p, row)
-            for part in range(3):
-                share = p[row + AXIAL_SHARE + part]
-                at[part] += share * x
-                at[3 + part] += share * x_rate
-    for k in range(int(p[LEG_AT + OSCILLATOR_COUNT])):
-        row = LEG_AT + OSCILLATORS + ROW * k
-        ring, kind = int(p[row]), int(p[row + 1])
-        if kind == OWN or p[RING * ring + FLOATS] != 0.0:
-            continue
-        sign = 1.0 - 2.0 * ring
-        a, a_rate = sign * (p[row + 2] + p[row + 3] * tau), sign * p[row + 3]
-        phase = p[row + 6] + tau * (p[row + 7] + tau * p[row + 8])
-        w = p[row + 7] + 2.0 * tau * p[row + 8]
-        cos, sin = math.cos(phase), math.sin(phase)
-        x, x_rate = a * cos, a_rate * cos - a * w * sin
-        if kind == AXIAL:
-            at[0] += x
-            at[3] += x_rate
-        elif kind == TURNING:
-            at[1] += x
-            at[2] += a * sin
-            at[4] += x_rate
-            at[5] += a_rate * sin + a * w * cos
-        else:
-            for part in range(2):
-                at[1 + part] += x * p[row + 4 + part]
-                at[4 + part] += x_rate * p[row + 4 + part]
+    their rates, into `at` (6,); `c` (2 x PER_RING) is scratch for the imposed state."""
+    imposed_state(tau, p[LEG_AT:], c)
+    for part in range(6):
+        at[part] = 0.0
+        for ring in range(2):
+            if p[RING * ring + FLOATS] == 0.0:
+                at[part] += (1.0 - 2.0 * ring) * c[PER_RING * ring + part]
 
 
 @inner_kernel()

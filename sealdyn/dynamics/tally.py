@@ -17,9 +17,9 @@ from functools import partial
 import numpy as np
 
 from ..faces.geometry import TOUCH
-from ..numerics.hermite import LOBATTO_ERROR, LOBATTO_ORDER, NODES, fit, points, sample, value
+from ..numerics.hermite import LOBATTO_ERROR, LOBATTO_ORDER, NODES, fit, points, sample
 from ..numerics.kernel import inner_kernel, outer_kernel
-from .extrema import MOST_SCAN, PER_RADIAN, SCAN, crossing_time, gap_and_tilt, locate_minimum, scan_step
+from .extrema import MOST_SCAN, PER_RADIAN, SCAN, crossing_time, locate_minimum, measures_at, scan_step
 from .native import thinnest_value
 from .signals import TALLIED, signals
 from .step_bounds import THICKNESS
@@ -76,11 +76,6 @@ def contact_event(row, level: float) -> dict:
             "radius": float(row[DEPTH_RADIUS]), "impulse": float(row[IMPULSE]), "depth": float(depth)}  # fmt: skip
 
 
-def _no_contact() -> np.ndarray:
-    """No contact yet."""
-    return np.zeros(STATE)
-
-
 @inner_kernel()
 def _begin(state, touched, impulse):
     state[OPEN], state[TOUCHED], state[IMPULSE], state[DEPTH_H] = 1.0, touched, impulse, np.inf
@@ -134,29 +129,22 @@ def locate_contacts(t, q_all, q_rate_all, impulse, count, begin, end, reach, p, 
         step = (high - low) / scan
         points = 0
         for i in range(scan + 1):
-            value(table, nodes, size, low + i * step, q, q_rate)
-            gap_and_tilt(low + i * step, q, y, yp, p, thinnest, f, w, s, out)
-            left, right = max(i - 1, 0), min(i + 1, scan)
+            here, left, right = low + i * step, max(i - 1, 0), min(i + 1, scan)
+            measures_at(here, table, nodes, size, q, q_rate, y, yp, p, thinnest, f, w, s, out)
+            at[points], height[points] = here, out[THICKNESS]
             dip = seen[i, THICKNESS] <= seen[left, THICKNESS] and seen[i, THICKNESS] <= seen[right, THICKNESS]
-            here, here_h = low + i * step, out[THICKNESS]
             if dip:
                 best = locate_minimum(
                     THICKNESS, low + left * step, low + right * step,
                     table, nodes, size, q, q_rate, y, yp, p, thinnest, f, w, s, out,
                 )  # fmt: skip
-                value(table, nodes, size, best, q, q_rate)
-                gap_and_tilt(best, q, y, yp, p, thinnest, f, w, s, out)
-                before = best < here
-                if out[THICKNESS] < here_h and best != here:
-                    if before:
-                        at[points], height[points] = best, out[THICKNESS]
-                        at[points + 1], height[points + 1] = here, here_h
-                    else:
-                        at[points], height[points] = here, here_h
-                        at[points + 1], height[points + 1] = best, out[THICKNESS]
-                    points += 2
-                    continue
-            at[points], height[points] = here, here_h
+                measures_at(best, table, nodes, size, q, q_rate, y, yp, p, thinnest, f, w, s, out)
+                if out[THICKNESS] < height[points] and best != here:
+                    # Between this point of the scan and the one before it, or the one after.
+                    place = points if best < here else points + 1
+                    points += 1
+                    at[points], height[points] = here, height[points - 1]
+                    at[place], height[place] = best, out[THICKNESS]
             points += 1
         for i in range(points):
             if i > 0 and height[i - 1] >= level > height[i] and state[OPEN] == 0.0:
@@ -167,8 +155,7 @@ def locate_contacts(t, q_all, q_rate_all, impulse, count, begin, end, reach, p, 
             elif state[OPEN] == 0.0 and height[i] < level:
                 _begin(state, start + at[i], impulse[k])
             if height[i] < level:
-                value(table, nodes, size, at[i], q, q_rate)
-                theta, radius = gap_and_tilt(at[i], q, y, yp, p, thinnest, f, w, s, out)
+                theta, radius = measures_at(at[i], table, nodes, size, q, q_rate, y, yp, p, thinnest, f, w, s, out)
                 _deepen(state, start + at[i], height[i], theta, radius)
             elif state[OPEN] != 0.0:
                 lifted = at[i]
@@ -181,8 +168,7 @@ def locate_contacts(t, q_all, q_rate_all, impulse, count, begin, end, reach, p, 
             elif i < points - 1 and height[i] <= level + error:
                 sinking = height[i] <= height[i - 1] if i > 0 else state[SINKING] != 0.0
                 if sinking and height[i] < height[i + 1] and found < len(rows):
-                    value(table, nodes, size, at[i], q, q_rate)
-                    theta, radius = gap_and_tilt(at[i], q, y, yp, p, thinnest, f, w, s, out)
+                    theta, radius = measures_at(at[i], table, nodes, size, q, q_rate, y, yp, p, thinnest, f, w, s, out)
                     _begin(state, start + at[i], impulse[k])
                     _deepen(state, start + at[i], height[i], theta, radius)
                     found = _close(state, start + at[i], impulse[k + 1], level, error, rows, found)
@@ -197,7 +183,7 @@ class ContactEvents:
 
     def __init__(self, model, extrema):
         self.model, self.extrema, self.summary = model, extrema, ContactSummary()
-        self.open, self.waiting, self.segment = _no_contact(), [], None
+        self.open, self.waiting, self.segment = np.zeros(STATE), [], None
 
     def begin(self, segment, tau, y):
         """A segment begins: a contact that goes on stays open."""

@@ -58,7 +58,7 @@ def test_kernel_is_the_spline_and_its_derivatives():
     splines = [make_interp_spline(time, column, k=5) for column in (axial, x, y)]
     for t in (0.0, *time[1:5], 0.3, 0.77, 1.0):
         imposed_state(t, segment.p[LEG_AT:], c)
-        imposed_gap(t, segment.p, gap)
+        imposed_gap(t, segment.p, segment.w[: 2 * PER_RING], gap)
         for n, spline in enumerate(splines):
             for at, order in ((Z, 0), (Z_RATE, 1), (Z_ACCELERATION, 2)):
                 scale = np.abs(spline.derivative(order)(time)).max() if order else np.abs(spline(time)).max()

@@ -10,6 +10,7 @@ from scipy.interpolate import CubicHermiteSpline
 
 from sealdyn.dynamics import segments
 from sealdyn.dynamics.extrema import LEAST, MOST, H, empty_records, slack, track_extremes, watched_level
+from sealdyn.dynamics.imposed_motion import PER_RING
 from sealdyn.dynamics.native import thinnest_value
 from sealdyn.dynamics.step_bounds import (
     MINUS_TILT,
@@ -110,7 +111,7 @@ def bounds(segment, face, t, q, q_rate, k):
     lowest = lowest_possible(face, segment.swing, motion)
     films = [h_min(face, segment.gap_state(t[k + at], unknowns(segment, q[k + at])))[0] for at in range(2)]
     for at in range(2):
-        imposed_gap(t[k + at], segment.p, imposed[at])
+        imposed_gap(t[k + at], segment.p, segment.w[: 2 * PER_RING], imposed[at])
     add_imposed(motion, imposed, t[k + 1] - t[k])
     bound_measures(face, segment.swing, t[k + 1] - t[k], segment.pace * t[k + 1], motion, np.array(films), lower)
     return lower, lowest
@@ -189,7 +190,7 @@ def test_imposed_motion_as_the_equations_have_it(seed):
     segment, step, at = ready.segment(0), 1e-8, np.empty(6)
     rest = np.zeros(segment.size)
     for tau in np.linspace(1e-4, segment.length - 1e-4, 7):
-        imposed_gap(tau, segment.p, at)
+        imposed_gap(tau, segment.p, segment.w[: 2 * PER_RING], at)
         before, here, after = (segment.gap_state(tau + move, rest)[:3].copy() for move in (-step, 0.0, step))
         scales = np.array([CLEARANCE, TILT_SCALE, TILT_SCALE])
         assert np.all(np.abs(at[:3] - here) <= 1e-13 * scales)

@@ -117,7 +117,7 @@ def test_motion_is_the_defined_one_and_its_derivatives(name, begin):
             w = 2 * math.pi * frequency_at(sweep, t)
             size = abs(sweep.displacement or sweep.acceleration / w**2)
             imposed_state(t - begin, segment.p[LEG_AT:], c)
-            imposed_gap(t - begin, segment.p, gap)
+            imposed_gap(t - begin, segment.p, segment.w[: 2 * PER_RING], gap)
             for slot, order in ((Z, 0), (Z_RATE, 1), (Z_ACCELERATION, 2)):
                 expected = float(mpmath.diff(exact, mpmath.mpf(t), order, h=mpmath.mpf(10) ** -12))
                 # A time of 1 s is a float within 1e-16, which a phase of 1e3 rad feels.
@@ -139,7 +139,7 @@ def test_tilt_is_about_its_direction_and_sweeps_add_up():
     for t in (0.05, 0.2, 0.39):
         imposed_state(t, segment.p[LEG_AT:], c)
         imposed_state(t, one.p[LEG_AT:], alone)
-        imposed_gap(t, segment.p, gap)
+        imposed_gap(t, segment.p, segment.w[: 2 * PER_RING], gap)
         for slot, other in ((TILT_X, Z), (TILT_X_RATE, Z_RATE), (TILT_X_ACCELERATION, Z_ACCELERATION)):
             expected = 2 * alone[other] * np.array([math.cos(0.7), math.sin(0.7)])
             assert c[slot : slot + 2] == pytest.approx(expected, rel=1e-12)
