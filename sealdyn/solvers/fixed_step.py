@@ -25,23 +25,11 @@ APART = 0.1
 TOO_LONG = "the step may be too long for this film."
 
 
-def _bdf_of_order_two(segment, tau, y, method, tolerance, counts):
-    """CVODE's BDF held at order two: what an order-limited stiff solver costs."""
-    _refuse_residual_form(segment, method)
-    yield from cvode(segment, tau, y, method, tolerance, counts, max_order=2)
-
-
-def _low_order(segment, tau, y, method, tolerance, counts):
-    """IDA held at order one, the implicit Euler rule with an error estimate, or at order two."""
-    yield from ida(segment, tau, y, method, tolerance, counts, max_order=1 if method == "ida1" else 2)
-
-
 def _scipy(segment, tau, y, method, tolerance, counts):
     """SciPy's RK45 (Dormand & Prince, 1980), LSODA (Petzold, 1983) and BDF (Shampine & Reichelt, 1997), step by
     step."""
     from scipy.integrate import BDF, LSODA, RK45
 
-    _refuse_residual_form(segment, method)
     kind = {"rk45": RK45, "lsoda": LSODA, "scipy_bdf": BDF}[method]
     steps = scipy_steps(kind, kind is not RK45, segment, tau, y, method, tolerance, counts)
     while True:
@@ -64,7 +52,6 @@ def _newmark(segment, tau, y, method, tolerance, counts):
     rates.  The works are integrated by the same rule.
     """
     system = _System(segment, method, tolerance, counts)
-    times = system.times(tau)
     rate, n = system.rates(tau, y), segment.n_mechanical
     before = rate
 
@@ -77,13 +64,12 @@ def _newmark(segment, tau, y, method, tolerance, counts):
         before, rate = rate, last
         return y
 
-    yield from system.march(times, y, advance)
+    yield from system.march(tau, y, advance)
 
 
 def _midpoint(segment, tau, y, method, tolerance, counts):
     """Implicit midpoint rule: symplectic, keeps quadratic invariants (Hairer, Lubich & Wanner, 2006, sec. II.1.1)."""
     system = _System(segment, method, tolerance, counts)
-    times = system.times(tau)
     rate, n = system.rates(tau, y), segment.n_mechanical
     before = rate
 
@@ -96,7 +82,7 @@ def _midpoint(segment, tau, y, method, tolerance, counts):
         before, rate = rate, last
         return y
 
-    yield from system.march(times, y, advance)
+    yield from system.march(tau, y, advance)
 
 
 def _generalised_alpha(segment, tau, y, method, tolerance, counts):
@@ -106,7 +92,6 @@ def _generalised_alpha(segment, tau, y, method, tolerance, counts):
     trapezoidal rule, which takes one evaluation more per step.
     """
     system = _System(segment, method, tolerance, counts)
-    times = system.times(tau)
     alpha_m, alpha_f = (2 * RHO - 1) / (RHO + 1), RHO / (RHO + 1)
     gamma = 0.5 - alpha_m + alpha_f
     beta = 0.25 * (0.5 + gamma) ** 2
@@ -146,7 +131,7 @@ def _generalised_alpha(segment, tau, y, method, tolerance, counts):
         before, a, rate = a, found, rate_next
         return y_next
 
-    yield from system.march(times, y, advance)
+    yield from system.march(tau, y, advance)
 
 
 def _segregated(segment, tau, y, method, tolerance, counts):
@@ -160,8 +145,6 @@ def _segregated(segment, tau, y, method, tolerance, counts):
     which limits the step: at light rings, and under liquids far below what pays.
     The segment has a `film_step` and `rates_under` a load (dynamics/coupled_segment.py).
     """
-    if np.any(segment.lacks_inertia):
-        raise SolverFailure(f"{method} needs rates, and a massless ring has none")
     load = np.zeros(3)
     system = _System(segment, method, tolerance, counts, lambda *at: segment.rates_under(load, *at))
     # A hundredth of the local error of a first-order method.
@@ -187,7 +170,7 @@ def _segregated(segment, tau, y, method, tolerance, counts):
         system.slope = (end - y) / h
         return end
 
-    yield from system.march(system.times(tau), y, advance)
+    yield from system.march(tau, y, advance)
 
 
 class _QuasiStatic:
@@ -201,8 +184,6 @@ class _QuasiStatic:
     film = slice(0, 0)
 
     def __init__(self, segment, y):
-        if np.any(segment.lacks_inertia):
-            raise SolverFailure("quasi_static needs rates, and a massless ring has none")
         self.segment, self.y = segment, y.copy()
         self.own = np.delete(np.arange(segment.size), segment.film)
         self.size, self.n_mechanical = len(self.own), segment.n_mechanical
@@ -242,8 +223,6 @@ class _System:
     """One segment for a fixed-step implicit method: steps, evaluations, modified Newton."""
 
     def __init__(self, segment, method, tolerance, counts, rhs=None):
-        if rhs is None:
-            _refuse_residual_form(segment, method)
         self.segment, self.method, self.counts, self.rhs = segment, method, counts, rhs or segment.rhs
         self.jacobian = partial(segment.jacobian, rhs=rhs) if rhs else segment.jacobian
         # The unknowns' rates at the last step, of a method that has those of a film.
@@ -253,12 +232,6 @@ class _System:
         self.small = max(1e-2 * tolerance**1.5, 1e-14)
         self.inverse, self.tied, self.whole = None, None, None
 
-    def times(self, tau):
-        """Start, step and number of the equal steps to the segment's end."""
-        span = self.segment.length - tau
-        count = max(1, math.ceil(span / self.step * (1 - 1e-12)))
-        return tau, span / count, count, self.segment.length
-
     def rates(self, t, y):
         """The whole right-hand side at unknowns `y`."""
         yp = np.empty(self.segment.size)
@@ -266,9 +239,11 @@ class _System:
         self.counts.rhs += 1
         return yp
 
-    def march(self, times, y, advance):
-        """Blocks of steps."""
-        start, h, count, end = times
+    def march(self, start, y, advance):
+        """Blocks of equal steps to the segment's end."""
+        end = self.segment.length
+        count = max(1, math.ceil((end - start) / self.step * (1 - 1e-12)))
+        h = (end - start) / count
         block = FEW if self.segment.may_change else BLOCK
         ts, ys, slopes = [], [], []
         for k in range(count):
@@ -328,26 +303,41 @@ class _System:
         self.inverse, self.tied = np.linalg.inv(built), tied
 
 
-def _refuse_residual_form(segment, method):
-    if segment.has_residual_form and not (np.all(segment.rate_places >= 0) and segment.has_rates):
-        what = "a massless ring has none" if np.any(segment.lacks_inertia) else "this film's unknowns have none"
-        raise SolverFailure(f"{method} needs rates, and {what}: only the residual form (IDA)")
+def _without_rates(segment) -> str:
+    """Why a segment has no rates, "" where it has them."""
+    if not segment.has_residual_form or (np.all(segment.rate_places >= 0) and segment.has_rates):
+        return ""
+    what = "a massless ring has none" if np.any(segment.lacks_inertia) else "this film's unknowns have none"
+    return f"{what}: only the residual form (IDA)"
 
 
-def _only_with_rates(steps):
-    """A method of METHODS that says so when the scene has no rates."""
+def _without_mass(segment) -> str:
+    """Why a segment's rings have no rates, "" where they have them."""
+    return "a massless ring has none" if np.any(segment.lacks_inertia) else ""
+
+
+def _refusing(lack, steps):
+    """A method that says so where a segment has a `lack` of the rates that it needs."""
 
     def guarded(segment, tau, y, method, tolerance, counts):
-        _refuse_residual_form(segment, method)
+        if why := lack(segment):
+            raise SolverFailure(f"{method} needs rates, and {why}")
         yield from steps(segment, tau, y, method, tolerance, counts)
 
     return guarded
 
 
-CHOSEN = {
-    name: steps if name in ("ida", "trbdf2") else _only_with_rates(steps) for name, steps in METHODS.items()
+# BDF of CVODE held at order two is what an order-limited stiff solver costs; IDA held at order one is the implicit
+# Euler rule with an error estimate.
+OF_RATES = {
+    "bdf2": partial(cvode, max_order=2), "rk45": _scipy, "lsoda": _scipy, "scipy_bdf": _scipy, "newmark": _newmark,
+    "generalised_alpha": _generalised_alpha, "midpoint": _midpoint,
 }  # fmt: skip
-REFERENCE_METHODS = {**CHOSEN, "bdf2": _bdf_of_order_two, "rk45": _scipy, "lsoda": _scipy, "scipy_bdf": _scipy,
-          "ida1": _low_order, "ida2": _low_order, "newmark": _newmark,
-          "generalised_alpha": _generalised_alpha, "midpoint": _midpoint, "segregated": _segregated,
-          "quasi_static": _quasi_static}  # fmt: skip
+OF_RINGS = {"segregated": _segregated, "quasi_static": _quasi_static}
+REFERENCE_METHODS = {
+    **METHODS,
+    **{name: _refusing(_without_rates, steps) for name, steps in {**METHODS, **OF_RATES}.items()
+       if name not in ("ida", "trbdf2")},
+    "ida1": partial(ida, max_order=1), "ida2": partial(ida, max_order=2),
+    **{name: _refusing(_without_mass, steps) for name, steps in OF_RINGS.items()},
+}  # fmt: skip

@@ -156,7 +156,6 @@ def trbdf2(segment, tau, y, method, tolerance, counts):
         if len(ts) == BLOCK_OF_STEPS or tau >= end:
             yield np.array(ts), np.array(ys), np.array(yps)
             ts, ys, yps = [], [], []
-    return
 
 
 def _step(segment, tau, h, y, yp, bend, tolerance):
