@@ -153,8 +153,8 @@ def _ring(ring, s):
     return whole, 2.0 * a2 * s + a1, ROUNDING * ((np.abs(a2 * s) + np.abs(a1)) * np.abs(s) + np.abs(a0))
 
 
-# Harmonics of twice the turn to either side: doubled until a share so small changes, or no more.
-FEWEST, MOST, SETTLED = 2, 16, 1e-10
+# Harmonics of twice the turn to either side: more of them until a share so small changes.
+REACHES, SETTLED = (2, 4, 8, 16), 1e-10
 # Members of one family are told apart by where their amplitudes lie, in k; those of a motion that turns with the ring
 # lie half a step to either side, within this.
 TIE = 1e-3
@@ -166,20 +166,13 @@ def exponents(linear) -> tuple[np.ndarray, np.ndarray]:
     """Characteristic exponents (m,) (1/s) and shapes (n, m) of a LinearScene, each with its conjugate; a motion that
     turns with the support once more with its mirror image."""
     found = None
-    for reach in _reaches():
+    for reach in REACHES:
         before, found = found, _exponents(linear, reach)
         if before is not None and len(before[0]) == len(found[0]):
             scale = max(np.max(np.abs(found[0])), 1e-300)
             if np.max(np.abs(np.sort_complex(before[0]) - np.sort_complex(found[0]))) <= SETTLED * scale:
                 break
     return found
-
-
-def _reaches():
-    reach = FEWEST
-    while reach <= MOST:
-        yield reach
-        reach *= 2
 
 
 def _exponents(linear, reach: int):
@@ -260,7 +253,7 @@ def _twice(linear) -> np.ndarray:
 def sidebands(linear, harmonic) -> list[tuple[float, np.ndarray]]:
     """What answers one harmonic: frequencies f + 2 k W (rad/s), its own first, and complex amplitudes (n,) of each."""
     found = None
-    for reach in _reaches():
+    for reach in REACHES:
         before, found = found, _sidebands(linear, harmonic, reach)
         if before is not None:
             middle = found[reach - reach // 2 : reach + reach // 2 + 1]

@@ -309,7 +309,8 @@ class LinearScene:
         """Complex displacement amplitudes (n,) answering one imposed harmonic.  Raises SceneError where supports turn
         uneven: of these ask `answers`."""
         self._constant("response at one frequency")
-        return self._response(harmonic)
+        at = self.at_frequency(harmonic.frequency)
+        return np.linalg.solve(at.dynamic(harmonic.frequency), at.load(harmonic))
 
     def answers(self, harmonics) -> list[tuple[Harmonic, np.ndarray]]:
         """Each imposed harmonic with its response (n,); where supports turn uneven also the frequencies that they add,
@@ -322,18 +323,12 @@ class LinearScene:
                 (_, own), *beside = sidebands(self, harmonic)
                 found += [(harmonic, own), *((Harmonic(w, harmonic.ring, none, none), q) for w, q in beside)]
             return found
-        return [(harmonic, self._response(harmonic)) for harmonic in harmonics]
+        return [(harmonic, self.response(harmonic)) for harmonic in harmonics]
 
     def _constant(self, what: str) -> None:
         if self.turning:
             key = f"{RING_NAMES[self.turning[0].sign < 0.0]}.support.tilt_stiffness"
             raise SceneError(key, f"two that turn with their ring, of which there is no {what}", "one")
-
-    def _response(self, harmonic: Harmonic) -> np.ndarray:
-        w = harmonic.frequency
-        if self.film is not None:
-            return self.at_frequency(w).response(harmonic)
-        return np.linalg.solve(self.dynamic(w), self.load(harmonic))
 
     def dynamic(self, w: float) -> np.ndarray:
         """Dynamic stiffness (n, n) at a frequency (rad/s)."""

@@ -264,11 +264,6 @@ def thresholds(values, low: float, high: float, points: int | None = None, neutr
     return found
 
 
-def critical_speed(values, low: float, high: float, points: int | None = None) -> float | None:
-    """Lowest of the `thresholds` in [low, high] (rad/s); None without one."""
-    return min(thresholds(values, low, high, points), default=None)
-
-
 def _signs(found, errors) -> np.ndarray:
     """Signs (m,) of the largest growth rate of each row, 0 where its bound contains zero, or without a mode."""
     grows = _largest(found.real - errors) > 0.0

@@ -8,7 +8,7 @@ from scenes import fmr, fms, fmsr
 from scipy.integrate import solve_ivp
 
 from sealdyn.analysis.rotating_wave import RotatingWave, branch, contact_tilt_aligned, free_model
-from sealdyn.dynamics.stability_thresholds import critical_speed, one_by_one
+from sealdyn.dynamics.stability_thresholds import one_by_one, thresholds
 
 SEALS = {"fms": fms(), "fmr": fmr(c=3.0), "fmsr": fmsr()}
 
@@ -17,7 +17,7 @@ SEALS = {"fms": fms(), "fmr": fmr(c=3.0), "fmsr": fmsr()}
 def family(request):
     scene = SEALS[request.param]
     model = free_model(scene, 1000.0)
-    threshold = critical_speed(one_by_one(lambda w: model.linear_scene(speed=w)), 1e2, 1e5)
+    threshold = thresholds(one_by_one(lambda w: model.linear_scene(speed=w)), 1e2, 1e5)[0]
     model = free_model(scene, threshold, accuracy=1e-10)
     return request.param, scene, threshold, model, branch(model, threshold)
 
