@@ -310,19 +310,14 @@ class CoupledSegment(Segment):
         decays faster than a step sees does not count."""
         rings, stores, (matrix, _) = self.film.start, self._stores, self._newton
         own, fast = error[:rings], [rate for rate in self.rate_places if rate >= 0]
+        rates, held = 0.0, own
+        if not np.any(self.lacks_inertia):
+            # Twice, since what a stage errs in a held ring's rate goes with its step once.
+            held = alpha**2 * np.linalg.solve(matrix, np.linalg.solve(matrix, own))
         if fast:
-            held = own if np.any(self.lacks_inertia) else self._filtered(own, alpha, matrix)
             rates = RATES * float(np.max(np.abs(held[fast]) / self.scales[fast]))
-        else:
-            rates = 0.0
         kept = np.abs(error[self.film][stores] / self.scales[self.film][stores])
         return max(rates, float(np.max(np.abs(own[: self.n]) / self.scales[: self.n])), float(np.mean(kept)))
-
-    @staticmethod
-    def _filtered(own, alpha, matrix):
-        """An error without what decays fast; twice, since what a stage errs in a held ring's rate goes with its step
-        once."""
-        return alpha**2 * np.linalg.solve(matrix, np.linalg.solve(matrix, own))
 
     def film_between(self, taus, q, q_rate, x):
         """The film's unknowns (m, n) at times (m,) (s) between steps, from displacements and rates and from `x`, where

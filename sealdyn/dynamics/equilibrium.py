@@ -55,12 +55,8 @@ class ClosingForce:
 
     def over(self, interval: Interval, film) -> tuple[float, float]:
         """Closing force (N) and its slope (N/s) over a segment."""
-        inner, outer = (
-            constant_and_slope(film.inner_pressure, interval),
-            constant_and_slope(film.outer_pressure, interval),
-        )
-        spring = constant_and_slope(self.spring, interval)
-        return tuple(self.at(inner[k], outer[k], spring[k]) for k in range(2))
+        quantities = film.inner_pressure, film.outer_pressure, self.spring
+        return tuple(map(self.at, *(constant_and_slope(quantity, interval) for quantity in quantities)))
 
 
 def settle(scene: Scene, opening_force) -> tuple[float, ClosingForce, list[Equilibrium], str]:

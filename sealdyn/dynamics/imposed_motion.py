@@ -161,11 +161,11 @@ def harmonics_of_segment(shaft, housing, rotor, stator, interval: Interval) -> n
     turning = {ROTOR: (interval.rotor_angle, shaft.speed), STATOR: (interval.stator_angle, stator.speed)}
     rows = []
 
-    def add(ring, kind, amplitude, phase, order=0.0, frequency=0.0, direction=0.0, clock=None):
+    def add(ring, kind, amplitude, phase, order=0.0, frequency=0.0, direction=0.0):
         value, slope = constant_and_slope(amplitude, interval)
         if value == 0.0 and slope == 0.0:
             return
-        angle, speed = turning[ring if clock is None else clock]
+        angle, speed = turning[ring]
         w, w_slope = constant_and_slope(speed, interval)
         cycles = Fraction(frequency) * interval.start if frequency else 0
         a0 = modulo_turn(Fraction(order) * angle) + 2 * math.pi * float(cycles % 1) + phase

@@ -133,20 +133,20 @@ class Intervals(Sequence):
 
     def _made(self, index: int) -> Interval:
         place = bisect_right(self._first, index) - 1
-        whole, share = self._wholes[place], Fraction(index - self._first[place], self._pieces[place])
-        if not share:
-            return replace(whole, span=whole.span / self._pieces[place])
-        before = replace(whole, span=whole.span * share)
+        each = self._wholes[place].span / self._pieces[place]
+        return self._part(self._wholes[place], each * (index - self._first[place]), each)
+
+    def _part(self, whole: Interval, gone: Fraction, span: Fraction) -> Interval:
+        """A stretch of `span` (s) of an interval, `gone` (s) after its start."""
+        before = replace(whole, span=gone)
         angles = (a + angle_turned(w, before, whole) for a, w in zip(whole.angles, self._speeds, strict=True))
-        return Interval(whole.start + before.span, whole.span / self._pieces[place], *angles)
+        return Interval(whole.start + gone, span, *angles)
 
     @property
     def end(self) -> Interval:
         """The last instants: where what is imposed has come to by then."""
         last = self[-1]
-        before = replace(last, span=last.span * (1 - Fraction(1, INSTANTS)))
-        angles = (a + angle_turned(w, before, last) for a, w in zip(last.angles, self._speeds, strict=True))
-        return Interval(last.start + before.span, last.span / INSTANTS, *angles)
+        return self._part(last, last.span - last.span / INSTANTS, last.span / INSTANTS)
 
     @property
     def few(self) -> list[Interval]:

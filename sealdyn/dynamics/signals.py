@@ -87,8 +87,20 @@ class Samples:
 
     @cached_property
     def reactions(self) -> dict[str, np.ndarray]:
-        """Force (N) and moments (N m), each (m,), of the seal on housing and shaft."""
-        return reactions(self)
+        """What the seal does to shaft and housing: force (N) along z and moments (N m) about x and y, each (m,), of the
+        ring that each carries, by its springs, dampers and secondary seal, or of the film itself on a rigid ring:
+
+            on a carrier of a floating ring   K (z - z_c) + D (z' - z_c') - friction,  and of the tilts the same
+            on a rigid one                    +-(film + contact - closing force),  +-(moments of film and contact)
+
+        **Source** the supports of equations.py, seen from their other end.
+        **Valid** beside the steady thrust of closing force and film, which balance each other at rest; inertia and
+        weight of a rigid ring are the carrier's own."""
+        found = {}
+        for k, carrier in enumerate(CARRIERS):
+            parts = _through_support(self, k) if self.segment.model.unknowns.floats[k] else _of_film(self, k)
+            found |= {f"{carrier}_{name}": part for name, part in zip(REACTION_PARTS, parts, strict=True)}
+        return found
 
 
 @dataclass(frozen=True)
@@ -246,23 +258,6 @@ def _stuck(k, at):
     if ring[equations.SEAL_AT]:
         return 1.0 - at.scratch[:, equations.SEALS + equations.PER_SEAL * k + equations.SEAL_EXCESS]
     return np.full(len(at.taus), ring[equations.STUCK])
-
-
-def reactions(at: Samples) -> dict[str, np.ndarray]:
-    """What the seal does to shaft and housing: force (N) along z and moments (N m) about x and y, each (m,), of the
-    ring that each carries, by its springs, dampers and secondary seal, or of the film itself on a ring that is rigid:
-
-        on a carrier of a floating ring   K (z - z_c) + D (z' - z_c') - friction,  and of the tilts the same
-        on a rigid one                    +-(film + contact - closing force),  +-(moments of film and contact)
-
-    **Source** the supports of equations.py, seen from their other end.
-    **Valid** beside the steady thrust of closing force and film, which balance each other at rest; inertia and weight
-    of a rigid ring are the carrier's own."""
-    found = {}
-    for k, carrier in enumerate(CARRIERS):
-        parts = _through_support(at, k) if at.segment.model.unknowns.floats[k] else _of_film(at, k)
-        found |= {f"{carrier}_{name}": part for name, part in zip(REACTION_PARTS, parts, strict=True)}
-    return found
 
 
 def _of_film(at, k):

@@ -117,19 +117,14 @@ class StickSlip:
     def restore(self, state: dict):
         """Go on from `state`."""
         self.stuck = {int(k): v for k, v in state["stuck"].items()}
-        self.leaving |= {int(k): v for k, v in state.get("leaving", {}).items()}
-        self.onset |= {int(k): np.array(v) for k, v in state.get("onset", {}).items()}
+        self.leaving = {int(k): v for k, v in state["leaving"].items()}
+        self.onset = {int(k): np.array(v) for k, v in state["onset"].items()}
         self.sticks, self.slips, self.dropped = state["sticks"], state["slips"], state["dropped"]
 
     def accept(self, block, advance) -> Transition | None:
         """The first transition in a block of steps, or None.  `advance(tau, y, until)` integrates from `tau` to `until`
         (s) and returns the unknowns (size,) there, or None where the equations jump between."""
-        found = self._next_transition(block.t, block.ys, block.yps, block.begin, block.end, advance)
-        return Transition(found[0], float(found[1]), *found[2:]) if found else None
-
-    def _next_transition(self, t, ys, yps, begin: int, end: int, advance):
-        """First change in steps [begin, end]: (step, time, unknowns, ring) or None."""
-        known = {}
+        t, ys, yps, known = block.t, block.ys, block.yps, {}
 
         def velocity(k, step):
             # The end of a step is the start of the next.
@@ -137,17 +132,17 @@ class StickSlip:
                 known[k, step] = self._velocity(k, t[step], ys[step])[0]
             return known[k, step]
 
-        for step in range(begin, end):
+        for step in range(block.begin, block.end):
             found = None
             for k in self.rings:
                 if self.stuck[k]:
                     change = self._slip(k, t, ys, yps, step, advance)
                 else:
                     change = self._capture(k, t, ys, step, velocity(k, step), velocity(k, step + 1), advance)
-                if change and (found is None or change[0] < found[0]):
-                    found = (*change, k)
+                if change and (found is None or change[0] < found.time):
+                    found = Transition(step, float(change[0]), change[1], k)
             if found:
-                return step, *found
+                return found
         return None
 
     def make(self, transition: Transition) -> Change:

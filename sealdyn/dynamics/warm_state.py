@@ -219,16 +219,16 @@ class Warming:
     @cached_property
     def cold_state(self) -> WarmState | None:
         """The state of unheated faces, None if they hold no film."""
-        return self.state(0.0, held) if (held := self.clearance(0.0)) else None
+        return self._following(0.0)
 
     @cached_property
     def scanned(self) -> list[WarmState]:
         """States along the rise, each at the clearance that its film holds, up to where it holds none."""
-        found, near, rises = [], None, self.highest * np.concatenate([[0.0], np.geomspace(FIRST, 1.0, SCANNED)])
+        found, rises = [], self.highest * np.concatenate([[0.0], np.geomspace(FIRST, 1.0, SCANNED)])
         for rise in map(float, rises):
-            near = self.clearance(rise, near)
-            if near is not None:
-                found.append(self.state(rise, near))
+            state = self._following(rise, found[-1].clearance if found else None)
+            if state is not None:
+                found.append(state)
             elif found:
                 return found + self._closing_film(found[-1], rise)
         return found
@@ -236,16 +236,15 @@ class Warming:
     def _closing_film(self, last: WarmState, beyond: float) -> list[WarmState]:
         """States ever nearer to the rise (K) at which the film holds no more, between the `last` of those that are and
         one `beyond`: heat grows without bound there."""
-        found, rise, near = [], last.rise, last.clearance
+        found = [last]
         for _ in range(HALVINGS):
-            middle = 0.5 * (rise + beyond)
-            clearance = self.clearance(middle, near)
-            if clearance is None:
+            middle = 0.5 * (found[-1].rise + beyond)
+            state = self._following(middle, found[-1].clearance)
+            if state is None:
                 beyond = middle
             else:
-                rise, near = middle, clearance
-                found.append(self.state(rise, near))
-        return found
+                found.append(state)
+        return found[1:]
 
     @cached_property
     def states(self) -> list[WarmState]:
@@ -277,22 +276,27 @@ class Warming:
         )  # fmt: skip
         if not least.fun < 0.0:
             return []
-        middle = self.state(float(least.x), self.clearance(float(least.x), here.clearance))
+        middle = self._following(float(least.x), here.clearance)
         return [self._balanced(before, middle), self._balanced(middle, after)]
 
-    def _surplus_at(self, rise, near) -> float:
+    def _following(self, rise, near=None):
+        """The state at a rise (K) and the clearance that continues one `near` (m); None where no film holds."""
         clearance = self.clearance(rise, near)
-        return math.nan if clearance is None else self.surplus(self.state(rise, clearance))
+        return None if clearance is None else self.state(rise, clearance)
+
+    def _surplus_at(self, rise, near) -> float:
+        state = self._following(rise, near)
+        return math.nan if state is None else self.surplus(state)
 
     def _balanced(self, low, high) -> WarmState:
         """The state between two of opposite surplus."""
         rise = crossing(lambda rise: self._surplus_at(rise, low.clearance), low.rise, high.rise)
-        return self.state(rise, self.clearance(rise, low.clearance))
+        return self._following(rise, low.clearance)
 
     def _judged(self, state: WarmState) -> WarmState:
         """A state of balance with its loop gain, slow eigenvalue and stability."""
         steps = STEP * max(state.rise, 1e-3) * np.array([-2.0, -1.0, 1.0, 2.0])
-        along = [self.state(state.rise + d, self.clearance(state.rise + d, state.clearance)) for d in steps]
+        along = [self._following(state.rise + d, state.clearance) for d in steps]
         made, left = (_slope([take(one) for one in along], steps) for take in (lambda one: one.power, self.surplus))
         slow = self._slow(state)
         stable = left < 0.0 if slow is None else slow.real < 0.0
@@ -387,9 +391,8 @@ class Warming:
         return None, ended
 
     def _held(self, rise: float, near: float) -> WarmState | None:
-        """The state at a rise (K) and the clearance that continues one `near` (m); None where no film holds."""
-        clearance = self.clearance(rise, near) if TINY * self.highest < rise <= self.highest else None
-        return None if clearance is None else self.state(rise, clearance)
+        """The same within the liquid's table; None beyond it, and of a rise that is none."""
+        return self._following(rise, near) if TINY * self.highest < rise <= self.highest else None
 
     def why_none(self) -> str:
         """Why there is no warm state, in words."""

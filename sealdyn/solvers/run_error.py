@@ -82,7 +82,7 @@ class EnergyAudit:
         """Go on from `state`."""
         self.worst, self.exchanged, self.last = state["worst"], state["moved"], state["last"]
         self.energy0, self.works0 = state["energy0"], state["works0"]
-        self.work, self.stored = state.get("done", 0.0), state.get("stored", 0.0)
+        self.work, self.stored = state["done"], state["stored"]
 
     def residual(self) -> float:
         """The largest defect over the energy exchanged, dimensionless; 0 when nothing is exchanged."""
