@@ -157,12 +157,10 @@ class CoupledSegment(Segment):
     unknowns have rates (`has_rates`), which no run takes and comparisons do; `ring_rates` are those of the rings at
     given unknowns of the film."""
 
-    def _bind(self):
-        """The equations are functions of this segment's own (coupled_native.py)."""
-        # How often the film was settled, or its residual evaluated on the way there.
-        self.settled = 0
-        # Factors of the film's own rows, after the alpha that they hold for.
-        self._film_factors: tuple = (0.0, None)
+    # How often the film was settled, or its residual evaluated on the way there.
+    settled = 0
+    # Factors of the film's own rows, after the alpha that they hold for.
+    _film_factors: tuple = (0.0, None)
 
     @cached_property
     def native(self):

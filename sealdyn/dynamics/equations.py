@@ -22,7 +22,6 @@ rings, the index of the works, whether there are two more of them, then the impo
 
 import math
 
-from ..faces.contact import contact_load
 from ..faces.geometry import (
     CONING_CHANGE,
     CONING_RATE,
@@ -284,13 +283,6 @@ def rates(tau, y, p, w, s, yp):
                 # Not the sum of forces, which is the same but for rounding: a stuck ring does not creep.
                 yp[tilt_rate] = w[SEALS + PER_SEAL * k + FOLLOWING + 1]
                 yp[tilt_rate + 1] = w[SEALS + PER_SEAL * k + FOLLOWING + 2]
-
-
-@outer_kernel()
-def touching_rates(tau, y, p, w, s, yp, k, f):
-    """As `rates`, with contact: `k` the contact's block, `f` the film's.  One call, since each costs 0.3 us."""
-    contact_load(k, f, s)
-    rates(tau, y, p, w, s, yp)
 
 
 @outer_kernel()

@@ -6,7 +6,7 @@ The kernels of film and contact come as addresses in the block: one function on 
 
 import math
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numba import boolean, carray, float64, int32, int64, types
@@ -22,6 +22,7 @@ from ..numerics.kernel import (
     call_film,
     call_load,
     call_rates,
+    call_residual,
     floats,
     inner_kernel,
     integers,
@@ -100,6 +101,11 @@ class Native:
     own_residual: int = 0
     derivatives: int = 0
 
+    @cached_property
+    def data(self) -> int:
+        """Address of the block."""
+        return self.block.ctypes.data
+
     @property
     def residual(self) -> int:
         """Address of the residual; that of rings alone is compiled when it is asked for: few integrations need it."""
@@ -169,6 +175,19 @@ def rates_along(function, block, taus, ys, yps):
     the `function` for C and of its `block` (dynamics/native.py)."""
     for i in range(len(taus)):
         call_rates(function, taus[i], ys[i].ctypes.data, yps[i].ctypes.data, block)
+
+
+@lazy_kernel(types.void(ADDRESS, ADDRESS, float64, VECTOR, VECTOR))
+def rates_of(function, block, tau, y, yp):
+    """The same at one time tau (s), into `yp` (unknowns,)."""
+    call_rates(function, tau, y.ctypes.data, yp.ctypes.data, block)
+
+
+@lazy_kernel(types.void(ADDRESS, ADDRESS, float64, VECTOR, VECTOR, VECTOR))
+def residual_of(function, block, tau, y, yp, res):
+    """Residual `res` (unknowns,) at a segment time tau (s), unknowns `y` and derivatives `yp` (unknowns,), by addresses
+    of the `function` for C and of its `block`."""
+    call_residual(function, tau, y.ctypes.data, yp.ctypes.data, res.ctypes.data, block)
 
 
 STATES = types.void(

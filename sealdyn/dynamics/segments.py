@@ -6,7 +6,6 @@ from functools import cached_property
 
 import numpy as np
 
-from ..faces import contact
 from ..faces.film_thickness import highest_orders
 from ..faces.geometry import GAP_STATE_SIZE, REFUSED, WAVES
 from ..scene.rings import STATOR
@@ -23,7 +22,7 @@ from .imposed_motion import (
     thermal_coning,
 )
 from .intervals import Interval, common_period, constant_and_slope, modulo_turn
-from .native import native, rates_along
+from .native import native, rates_along, rates_of, residual_of
 from .step_bounds import BEND, REACH, largest_swing
 from .swept_motion import fastest_sweep, largest_sweep, motions, splines, sweeps_of, sweeps_of_segment
 
@@ -69,7 +68,6 @@ class Segment:
         self.imposed_pace = max([*paces, *(motion.pace for motion in self.records.values())], default=0.0)
         self.pace = self._pace()
         self.w, self.s = np.zeros(equations.SCRATCH), np.zeros(GAP_STATE_SIZE)
-        self._bind()
 
     def _parameters(self):
         """Parameters: tables as value and slope, phases reduced modulo one turn; and the imposed harmonics."""
@@ -127,42 +125,23 @@ class Segment:
         """Speeds (rad/s) of stator and rotor."""
         return self.model.scene.stator.speed, self.model.scene.shaft.speed
 
-    def _bind(self):
-        """Right-hand side and residual as plain functions over this segment's arrays."""
-        p, w, s, f = self.p, self.w, self.s, self.model.f
-        kinematics, rates, balance = equations.kinematics, equations.rates, equations.residual
-        wrench, load, both = self.model.interface.film.wrench, contact.contact_load, equations.touching_rates
-        work, block = np.zeros(self.size), self.model.contact
-
-        def rhs(tau, y, yp):
-            kinematics(tau, y, yp, p, w, s)
-            wrench(f, s)
-            rates(tau, y, p, w, s, yp)
-
-        def residual(tau, y, yp, res):
-            kinematics(tau, y, yp, p, w, s)
-            wrench(f, s)
-            balance(tau, y, yp, p, w, s, work, res)
-
-        def touching_rhs(tau, y, yp):
-            kinematics(tau, y, yp, p, w, s)
-            wrench(f, s)
-            both(tau, y, p, w, s, yp, block, f)
-
-        def touching_residual(tau, y, yp, res):
-            kinematics(tau, y, yp, p, w, s)
-            wrench(f, s)
-            load(block, f, s)
-            balance(tau, y, yp, p, w, s, work, res)
-
-        # A scene without contact pays nothing for it.
-        self.rhs, self.residual = (rhs, residual) if block is None else (touching_rhs, touching_residual)
-        self.ring_rates = self.rhs
-
     @cached_property
     def native(self):
         """These equations for C (native.py), which work on this segment's arrays and those of its copies."""
         return native(self)
+
+    def rhs(self, tau, y, yp):
+        """Right-hand side into `yp` (size,) at segment time `tau` (s) and unknowns `y` (size,)."""
+        # A solver's arrays may be for reading only, which no kernel takes: here, and below.
+        rates_of(self.native.rates, self.native.data, tau, np.array(y), yp)
+
+    def ring_rates(self, tau, y, yp):
+        """The same: the film has no unknowns."""
+        self.rhs(tau, y, yp)
+
+    def residual(self, tau, y, yp, res):
+        """Residual into `res` (size,) at unknowns `y` and their derivatives `yp` (size,)."""
+        residual_of(self.native.residual, self.native.data, tau, np.array(y), np.array(yp), res)
 
     def failure(self) -> str:
         """What the film says if it had no solution since it was asked last, else ""."""
@@ -281,12 +260,7 @@ class Segment:
     def derivatives(self, taus, ys) -> np.ndarray:
         """The right-hand side (m, size) at times and unknowns `ys` (m, size); every ring has mass."""
         out = np.zeros((len(taus), self.size))
-        if self.native is None:
-            # Equations of other programs' own.
-            for tau, y, yp in zip(taus, ys, out, strict=True):
-                self.rhs(tau, y, yp)
-        else:
-            rates_along(self.native.rates, self.native.block.ctypes.data, taus, ys, out)
+        rates_along(self.native.rates, self.native.data, taus, ys, out)
         return out
 
     def impulses(self, ys) -> np.ndarray:

@@ -402,7 +402,7 @@ def _loop_arrays(alike, loop):
     segments = [segment for one in alike for segment in one.segments]
     runs = loop.Runs(
         stretches,
-        np.array([[s.native.block.ctypes.data, s.index, 0, 0] for s in segments]),
+        np.array([[s.native.data, s.index, 0, 0] for s in segments]),
         np.array([loop.numbers(segment) for segment in segments]),
         np.array([segment.swing for segment in segments]),
         np.array([one.tolerance for one in alike]),

@@ -208,7 +208,7 @@ class Objects:
 def words_for(segment, function: int) -> np.ndarray:
     """The words (CARRIED,) for the equations of a segment, by the address of their `function`; they point into its
     native block and its scales, which have to stay."""
-    block, scales = segment.native.block.ctypes.data, segment.differences.ctypes.data
+    block, scales = segment.native.data, segment.differences.ctypes.data
     words = [function, block, segment.size, segment.n_mechanical, scales, *[0] * (CARRIED - CALLS)]
     return np.array(words, dtype=np.int64)
 

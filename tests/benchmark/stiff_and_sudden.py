@@ -52,26 +52,33 @@ def scenario(name):
 class CountedSegment(Segment):
     """A segment that counts its evaluations, and stops a method beyond its model's budget."""
 
-    def _bind(self):
-        super()._bind()
-        rhs, residual, model = self.rhs, self.residual, self.model
+    native = None
 
-        def check(t, y):
-            model.calls += 1
-            # Trial states with the rotor beyond the other face.
-            model.closed += y[0] >= model.clearance
-            if model.calls > model.budget:
-                raise SolverFailure(f"crawls at {self.time + t:.3g} s")
+    def __init__(self, *given):
+        super().__init__(*given)
+        self.plain = Segment(*given)
 
-        def counted_rhs(t, y, yp):
-            check(t, y)
-            rhs(t, y, yp)
+    def _check(self, t, y):
+        model = self.model
+        model.calls += 1
+        # Trial states with the rotor beyond the other face.
+        model.closed += y[0] >= model.clearance
+        if model.calls > model.budget:
+            raise SolverFailure(f"crawls at {self.time + t:.3g} s")
 
-        def counted_residual(t, y, yp, res):
-            check(t, y)
-            residual(t, y, yp, res)
+    def rhs(self, t, y, yp):
+        self._check(t, y)
+        self.plain.rhs(t, y, yp)
 
-        self.rhs, self.residual, self.native = counted_rhs, counted_residual, None
+    def residual(self, t, y, yp, res):
+        self._check(t, y)
+        self.plain.residual(t, y, yp, res)
+
+    def derivatives(self, taus, ys):
+        out = np.zeros((len(taus), self.size))
+        for tau, y, yp in zip(taus, ys, out, strict=True):
+            self.rhs(tau, y, yp)
+        return out
 
 
 class Counted(Model):

@@ -24,17 +24,24 @@ def wrong(change):
     """A Model whose equation of motion is off by `change(y, rates' part)` while its works are as before."""
 
     class WrongSegment(Segment):
-        def _bind(self):
-            super()._bind()
-            right, tilt, rate = self.rhs, self.n - 2, self.n_mechanical - 2
+        native = None
 
-            def rhs(tau, y, yp):
-                right(tau, y, yp)
-                push = change(complex(*y[tilt : tilt + 2]), complex(*y[rate : rate + 2])) / INERTIA
-                yp[rate] += push.real
-                yp[rate + 1] += push.imag
+        def __init__(self, *given):
+            super().__init__(*given)
+            self.right = Segment(*given)
 
-            self.rhs, self.native = rhs, None
+        def rhs(self, tau, y, yp):
+            self.right.rhs(tau, y, yp)
+            tilt, rate = self.n - 2, self.n_mechanical - 2
+            push = change(complex(*y[tilt : tilt + 2]), complex(*y[rate : rate + 2])) / INERTIA
+            yp[rate] += push.real
+            yp[rate + 1] += push.imag
+
+        def derivatives(self, taus, ys):
+            out = np.zeros((len(taus), self.size))
+            for tau, y, yp in zip(taus, ys, out, strict=True):
+                self.rhs(tau, y, yp)
+            return out
 
     class Wrong(Model):
         def segment(self, interval=None, index=0, last=True, stuck=None):
