@@ -25,15 +25,10 @@ APART = 0.1
 TOO_LONG = "the step may be too long for this film."
 
 
-def _scipy(segment, tau, y, method, tolerance, counts):
-    """SciPy's RK45 (Dormand & Prince, 1980), LSODA (Petzold, 1983) and BDF (Shampine & Reichelt, 1997), step by
-    step."""
-    from scipy.integrate import BDF, LSODA, RK45
-
-    kind = {"rk45": RK45, "lsoda": LSODA, "scipy_bdf": BDF}[method]
-    steps = scipy_steps(kind, kind is not RK45, segment, tau, y, method, tolerance, counts)
+def _silent(*given):
+    """Steps of SciPy's solvers without their warnings, with which LSODA gives up."""
+    steps = scipy_steps(*given)
     while True:
-        # LSODA warns before it gives up.
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             block = next(steps, None)
@@ -208,10 +203,8 @@ class _QuasiStatic:
 
 def _quasi_static(segment, tau, y, method, tolerance, counts):
     """Rings on a quasi-static film, by SciPy's BDF."""
-    from scipy.integrate import BDF
-
     rings, film = _QuasiStatic(segment, y), segment.film
-    for ts, owns, _ in scipy_steps(BDF, True, rings, tau, y[rings.own], method, tolerance, counts):
+    for ts, owns, _ in scipy_steps(rings, tau, y[rings.own], method, tolerance, counts):
         rates, end = rings.whole(ts[-1], owns[-1])
         # Between steps the film is interpolated.
         rates[film] = (end[film] - y[film]) / (ts[-1] - tau)
@@ -330,7 +323,7 @@ def _refusing(lack, steps):
 # BDF of CVODE held at order two is what an order-limited stiff solver costs; IDA held at order one is the implicit
 # Euler rule with an error estimate.
 OF_RATES = {
-    "bdf2": partial(cvode, max_order=2), "rk45": _scipy, "lsoda": _scipy, "scipy_bdf": _scipy, "newmark": _newmark,
+    "bdf2": partial(cvode, max_order=2), "rk45": _silent, "lsoda": _silent, "scipy_bdf": _silent, "newmark": _newmark,
     "generalised_alpha": _generalised_alpha, "midpoint": _midpoint,
 }  # fmt: skip
 OF_RINGS = {"segregated": _segregated, "quasi_static": _quasi_static}

@@ -7,22 +7,21 @@ import numpy as np
 from .contract import SolverFailure, absolute_tolerances, failure_message
 from .sundials_libraries import libraries
 
+# SciPy's solvers, and whether they are implicit.
+SCIPY = {"dop853": ("DOP853", False), "radau": ("Radau", True), "rk45": ("RK45", False), "lsoda": ("LSODA", True),
+         "scipy_bdf": ("BDF", True), "quasi_static": ("BDF", True)}  # fmt: skip
 
-def dop853_or_radau(segment, tau, y, method, tolerance, counts):
-    """Steps of SciPy's DOP853 or Radau, with the contract of contract.py.
+
+def scipy_steps(segment, tau, y, method, tolerance, counts):
+    """Steps of one of SciPy's solvers (`method` a key of SCIPY), with the contract of contract.py; an implicit one is
+    given the segment's Jacobian.  **Raises** SolverFailure.
 
     **Source** Hairer, Norsett & Wanner (1993), Solving ODEs I (DOP853); Hairer & Wanner (1996), Solving ODEs II, IV.8
-    (Radau IIA).
+    (Radau IIA); Dormand & Prince, 1980 (RK45); Petzold, 1983 (LSODA); Shampine & Reichelt, 1997 (BDF).
     """
-    from scipy.integrate import DOP853, Radau
+    from scipy import integrate
 
-    kind = DOP853 if method == "dop853" else Radau
-    yield from scipy_steps(kind, kind is Radau, segment, tau, y, method, tolerance, counts)
-
-
-def scipy_steps(kind, implicit, segment, tau, y, method, tolerance, counts):
-    """Steps of one of SciPy's solvers (the class `kind`), other arguments as contract.py; an `implicit` one is given
-    the segment's Jacobian.  **Raises** SolverFailure."""
+    kind, implicit = SCIPY[method]
     inner, stores = segment.rhs, segment.film.stop > segment.film.start
 
     def counted(t, y):
@@ -45,7 +44,7 @@ def scipy_steps(kind, implicit, segment, tau, y, method, tolerance, counts):
     # SciPy's own floor on rtol is 100 eps; the absolute part carries the accuracy below it.  Its norm is an average:
     # the unweighted last unknown would only loosen it, by sqrt(n/(n-1)).
     relative, absolute = max(tolerance, 2.3e-14), absolute_tolerances(segment, tolerance)
-    solver = kind(
+    solver = getattr(integrate, kind)(
         counted, tau, y, segment.length, rtol=relative, atol=absolute, max_step=segment.longest_step(), **options
     )
     while solver.status == "running":
@@ -131,8 +130,8 @@ METHODS = {
     "adams": cvode,
     "bdf": cvode,
     "ida": ida,
-    "dop853": dop853_or_radau,
-    "radau": dop853_or_radau,
+    "dop853": scipy_steps,
+    "radau": scipy_steps,
     "expm": _expm,
     "trbdf2": _trbdf2,
 }
