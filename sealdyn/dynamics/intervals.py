@@ -20,6 +20,7 @@ FEW = 100  # intervals between two break points that stand for all
 
 INSTANTS = 1000  # of an interval are its end
 ROUNDING = 1e-13  # of a value is what a sum of two has lost
+MOST_CYCLES = 64  # of the slowest motion in a common period
 
 # 2 pi to 60 digits (mathematical constant).
 TURN = Decimal("6.28318530717958647692528676655900576839433879875021164194988918")
@@ -226,15 +227,15 @@ def _with_reversals(speed: PiecewiseLinear) -> list[float]:
     return sorted(times)
 
 
-def common_period(frequencies, most: int = 64) -> float | None:
+def common_period(frequencies) -> float | None:
     """Shortest common period (s) of angular frequencies (rad/s), None if they are incommensurate (no ratio of
-    whole numbers up to `most` within 1e-9)."""
+    whole numbers up to MOST_CYCLES within 1e-9)."""
     moving = sorted({abs(w) for w in frequencies if w != 0.0})
     if not moving:
         return None
     base, multiple = moving[0], 1
     for w in moving[1:]:
-        ratio = Fraction(w / base).limit_denominator(most)
+        ratio = Fraction(w / base).limit_denominator(MOST_CYCLES)
         if abs(ratio - Fraction(w / base)) > 1e-9 * ratio:
             return None
         multiple = math.lcm(multiple, ratio.denominator)

@@ -13,6 +13,7 @@ import numpy as np
 from ..numerics.piecewise_linear import crossing
 from ..scene.scene import SceneError
 from .exponents import roots, slope
+from .modes import STILL
 
 # --- Neutral speeds ------------------------------------------------------------------------------------
 
@@ -196,8 +197,6 @@ def _along(whirl, x, w, by_x, by_w):
     return value, by_x * by_s, by_w * by_s + at_rest, rounding
 
 
-# An eigenvalue whose imaginary part is below this share of it does not oscillate.
-STILL = 1e-9
 # How near, as a share, a known neutral speed is looked at from both sides.
 BESIDE = 1e-6
 # Speeds that are looked at, in the logarithm to 10, and by how much of a step they are beside round ones.

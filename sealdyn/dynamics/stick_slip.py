@@ -306,9 +306,7 @@ class StickSlip:
                 if tau == t[step] or part < SHORTEST:
                     return None
                 tau, y = before
-                v, rate = self._velocity(k, tau, y)
-                speed = float(np.linalg.norm(v))
-                slowing = -float(v @ rate) / speed
+                continue
             until = tau + min(part * speed, speed - ABOVE * band) / slowing
             until = min(until, tau + part * (latest - tau))
             if until <= tau:
