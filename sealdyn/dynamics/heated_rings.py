@@ -111,10 +111,6 @@ class ThermalStates:
         self.immediate = np.array([1.0 / whole.immediate_resistance for whole in wholes])
         self.immediate_coning = np.array([whole.immediate_coning for whole in wholes]) * self.immediate
 
-    def steady(self, rise: float) -> np.ndarray:
-        """The states at a rise (K) that stays."""
-        return np.full(len(self.content), rise)
-
     def beneath(self, theta: np.ndarray) -> np.ndarray:
         """The rise (K) of each ring's face less what follows its heat at once."""
         return np.bincount(self.ring, self.share * theta, len(self.immediate))
@@ -123,10 +119,6 @@ class ThermalStates:
         """Of theta (K/s), the faces at a rise (K)."""
         entering = self.immediate * (rise - self.beneath(theta))
         return (self.resistance * entering[self.ring] - theta) / self.time
-
-    def coning_rate(self, rates: np.ndarray) -> float:
-        """Of the coning by heat (rad/s), from those of theta (..., states) (K/s), without that of X_0 q."""
-        return rates @ self.coning
 
     def matrix(self, squeezed: np.ndarray, heated: np.ndarray, arm: float) -> np.ndarray:
         """Rates (1/s) of a thickness and theta about a warm state over small changes of these, (1 + states, the same).

@@ -173,14 +173,9 @@ class Interface:
         first = (lambda q: constant_and_slope(q, interval)[0]) if interval else initially
         return _clear(film, first(film.inner_pressure), first(film.outer_pressure))
 
-    def _floored_at(self, s):
-        """Function `wrench(f, s)` and block for small motion about a gap state: without a floor that it never meets."""
-        if _clear(self.scene.film, s[INNER_PRESSURE], s[OUTER_PRESSURE]):
-            return self._unfloored
-        return self.film.wrench, self._fine
-
     @cached_property
     def _unfloored(self):
+        """Function `wrench(f, s)` and block of the film without the floor of its pressure."""
         table = replace(self._table_used, cavitation_pressure=None)
         plain = film_named(self.name, table, self.scene.contact is not None)
         f = plain.parameters(table, self.clearance, FINE)
@@ -216,8 +211,11 @@ class Interface:
                 damping_error=own.damping_error + more.damping_error,
             )
         if self.unknowns is None:
-            plain = self.scene.film.cavitation_pressure is None
-            return film_slopes(*((self.film.wrench, self._fine) if plain else self._floored_at(s)), s, steps)
+            floored, wrench, f = self.scene.film.cavitation_pressure is not None, self.film.wrench, self._fine
+            if floored and _clear(self.scene.film, s[INNER_PRESSURE], s[OUTER_PRESSURE]):
+                # Small motion never meets the floor.
+                wrench, f = self._unfloored
+            return film_slopes(wrench, f, s, steps)
         matrices = (film or self.linear_film(s, steps)).matrices(omega)
         return _known(*matrices, CONDENSED if self.contact is None else CONDENSED + NOISE * self.clearance / steps[0])
 

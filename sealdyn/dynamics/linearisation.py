@@ -222,20 +222,16 @@ def harmonics(segment) -> list[Harmonic]:
     return found + (_of_offset_faces(segment) if segment.p[OFFSET] else [])
 
 
-def _offset_at(block, interval, scene, coning_change: float) -> tuple[complex, float, float]:
-    """The narrower face's centre (m), x + i y, at an interval's start, the speed (rad/s) at which it turns, and the
-    rate of the tilt, per m of the centre, that a coned film feels (rad/(m s))."""
-    speeds = [constant_and_slope(quantity, interval)[0] for quantity in (scene.stator.speed, scene.shaft.speed)]
-    own, angle = (speeds[1], interval.rotor_angle) if block[geometry.OF_ROTOR] else (speeds[0], interval.stator_angle)
-    coned = (0.5 * sum(speeds) - own) * (block[geometry.CONED] + coning_change) / block[geometry.MEAN_RADIUS]
-    return block[geometry.OFFSET] * np.exp(1j * (block[geometry.DIRECTION] + modulo_turn(angle))), own, coned
-
-
 def _of_offset_faces(segment) -> list[Harmonic]:
     """What the offset of a face does to the floating rings: the closing force on its arm to the wider one, and to both
     the film of coned faces that slide."""
     block, interval, model = segment.p[OFFSET:], segment.interval, segment.model
-    centre, pace, coned = _offset_at(block, interval, model.scene, model.coning_change(interval))
+    speeds = [constant_and_slope(ring.speed, interval)[0] for ring in (model.scene.stator, model.scene.shaft)]
+    pace, angle = (speeds[1], interval.rotor_angle) if block[geometry.OF_ROTOR] else (speeds[0], interval.stator_angle)
+    # The narrower face's centre (m), x + i y, and the rate of the tilt, per m of it, that a coned film feels.
+    centre = block[geometry.OFFSET] * np.exp(1j * (block[geometry.DIRECTION] + modulo_turn(angle)))
+    coning = block[geometry.CONED] + model.coning_change(interval)
+    coned = (0.5 * sum(speeds) - pace) * coning / block[geometry.MEAN_RADIUS]
     linear, none = model.linear_scene(interval), np.zeros(3, dtype=complex)
     force, found = model.closing.over(interval, model.scene.film)[0], []
     for k in linear.floating:

@@ -263,11 +263,6 @@ class Segment:
         rates_along(self.native.rates, self.native.data, taus, ys, out)
         return out
 
-    def impulses(self, ys) -> np.ndarray:
-        """Impulse of contact (N s) so far at stored steps."""
-        place = self.model.unknowns.impulse
-        return np.zeros(len(ys)) if place is None else np.ascontiguousarray(ys[:, place])
-
     def energies(self, taus, ys) -> np.ndarray:
         """Kinetic and spring energy (J) at stored steps."""
         out = np.empty(len(taus))

@@ -194,11 +194,12 @@ class ContactEvents:
         if self.model.contact is None:
             return
         segment, (q, q_rate) = self.segment, block.motion
+        impulse = np.ascontiguousarray(block.ys[:, self.model.unknowns.impulse])
         # Each dip lies between points of the scan.
         looked = PER_RADIAN * segment.pace * np.diff(block.t[block.begin : block.end + 1])
         rows = np.empty((64 + int(np.sum(np.clip(looked, SCAN, MOST_SCAN) + 1)), ROW))
         found = locate_contacts(
-            block.t, q, q_rate, segment.impulses(block.ys), len(block.t), block.begin, block.end, self.extrema.reach,
+            block.t, q, q_rate, impulse, len(block.t), block.begin, block.end, self.extrema.reach,
             segment.p, thinnest_value(self.model.face), self.model.f, np.zeros(segment.size), np.zeros(segment.size),
             segment.w, segment.s, segment.time, segment.pace, self.model.gap_error(), self.open, rows,
         )  # fmt: skip

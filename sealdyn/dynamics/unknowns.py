@@ -247,9 +247,6 @@ def _axial_motion_is_imposed(scene) -> bool:
     """Whether anything but its own start ever moves a ring axially."""
     runouts = any(runout.amplitude for runout in scene.rotor.axial_runout)
     sampled = any(m.moves("axial") for m in (scene.housing.motion, scene.shaft.motion) if m)
-    shaken = any(_moves(shaken) for shaken in (*scene.housing.axial_tones, *scene.housing.axial_sweep))
+    vibrations = [*scene.housing.axial_tones, *scene.housing.axial_sweep]
+    shaken = any(one.displacement or one.acceleration for one in vibrations)
     return runouts or sampled or shaken or any(pulls(load_of(ring)) for ring in (scene.stator, scene.rotor))
-
-
-def _moves(shaken) -> bool:
-    return bool(shaken.displacement or shaken.acceleration)

@@ -154,7 +154,7 @@ def course(scene, times, start: WarmState, say: Callable[[float], None] = lambda
     # Coning that follows the heat at once turns the faces about where it squeezes nothing: the thickness there is the
     # unknown beside the states of the rings, the heat made and the heat that left (J).
     arm = turned / damped
-    y = np.array([1.0 + arm * start.coned_by / unit, *rings.steady(start.rise), 0.0, 0.0])
+    y = np.array([1.0 + arm * start.coned_by / unit, *np.full(len(rings.content), start.rise), 0.0, 0.0])
 
     def here(t):
         return whole.under(frozen_at(scene, float(t)))
@@ -165,7 +165,7 @@ def course(scene, times, start: WarmState, say: Callable[[float], None] = lambda
         carried = now.carried * now.rise
         warming_up = rings.rates(theta, now.rise) if rings.several else [found.surplus(now) / rings.content[0]]
         axial, turning = found.damping(now.rise, now.clearance, now.coned_by)
-        by_heat = (turning - arm * axial) * rings.coning_rate(np.asarray(warming_up))
+        by_heat = (turning - arm * axial) * (np.asarray(warming_up) @ rings.coning)
         squeezed = (now.excess - turning * cold_rate - by_heat) / (max(axial, LEAST * damped) * unit)
         return np.array([squeezed, *warming_up, now.power, float(rings.leaving @ theta) + carried])
 

@@ -264,7 +264,8 @@ def collocation(segment, tau, y, method, tolerance, counts):
         following = min(largest, factor * h)
         # The same step again keeps the matrix.
         following = h if h <= following < 1.3 * h else following
-        stages = _extrapolated(c, k, following / h)
+        # The derivatives carried on to the nodes of the next step.
+        stages = _carried(c, 1.0 + following / h * c) @ k
         if counts.steps % 8 == 0 or following != h:
             jac = None
         h = following
@@ -323,11 +324,6 @@ def _stages(rhs, tau, h, y, k, c, a, inverse, n, scale):
             return k if size < 1e-11 else None
         before = size
     return None
-
-
-def _extrapolated(c, k, ratio):
-    """The last step's derivatives carried on to the nodes of the next, `ratio` times as long."""
-    return _carried(c, 1.0 + ratio * c) @ k
 
 
 def _carried(c, at):
