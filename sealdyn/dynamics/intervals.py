@@ -103,8 +103,6 @@ def spins(scene, interval: Interval | None = None) -> tuple[float, float]:
 
 def modulo_turn(angle: Fraction) -> float:
     """An exact angle (rad) modulo one turn, as a float within 1e-16."""
-    if not angle:
-        return 0.0
     exact = Decimal(angle.numerator) / Decimal(angle.denominator)
     return float(exact % TURN)
 

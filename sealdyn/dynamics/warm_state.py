@@ -172,10 +172,10 @@ class Warming:
                     return crossing(excess, below, above)
                 below, above = (below, above * STRIDE) if e > 0.0 else (below / STRIDE, above)
         scene = self.at(rise)
-        film, surfaces = coned(scene), (waves_of(scene), scene.contact)
-        force = self._opening_law(scene)
         try:
-            roots = equilibria(film, force, self.closing, *self.pressures, *surfaces)
+            roots = equilibria(
+                coned(scene), self._opening_law(scene), self.closing, *self.pressures, waves_of(scene), scene.contact
+            )
         except SceneError:
             return None
         return next((root.clearance for root in reversed(roots) if root.stable), None)
@@ -251,19 +251,15 @@ class Warming:
         """Every warm state, the coolest first."""
         scanned, found = self.scanned, []
         surplus = [self.surplus(state) for state in scanned]
+        sizes = np.abs(surplus)
         for k in range(len(scanned) - 1):
             low, high = scanned[k], scanned[k + 1]
             if surplus[k] * surplus[k + 1] <= 0.0 and surplus[k] != surplus[k + 1]:
                 found.append(self._balanced(low, high))
-            elif k > 0 and surplus[k] and self._may_dip(surplus, k):
+            elif k > 0 and sizes[k - 1] > sizes[k] < sizes[k + 1] and surplus[k - 1] * surplus[k] > 0.0:
+                # Of one sign and least here: nearby it may have the other.
                 found += self._dip(scanned[k - 1], low, high)
         return [self._judged(state) for state in found]
-
-    @staticmethod
-    def _may_dip(surplus, k) -> bool:
-        """Whether the surplus has its least size of one sign at the place k of those scanned."""
-        before, here, after = (abs(surplus[j]) for j in (k - 1, k, k + 1))
-        return surplus[k - 1] * surplus[k] > 0.0 < surplus[k] * surplus[k + 1] and before > here < after
 
     def _dip(self, before, here, after) -> list[WarmState]:
         """The two states between which the surplus has the other sign, if it has it anywhere near its least size."""

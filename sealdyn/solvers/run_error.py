@@ -116,9 +116,8 @@ class GlobalErrorEstimate:
     """An observer of the error so far, carried along a run of constant conditions; every ring has mass.  `worst` is the
     largest of any displacement at any step, relative to its scale, and of what else is `looked_at` (an object as
     ErrorScales of simulation/verification_run.py, or None), rates at any step, loads at a few where these are largest;
-    beyond
-    `allowed` a run had better use a sharper tolerance than its own `tolerance`, down to `least`.  Not `sound`: the
-    eigenvectors nearly coincide, and nothing is estimated."""
+    beyond `allowed` a run had better use a sharper tolerance than its own `tolerance`, down to `least`.  Not `sound`:
+    the eigenvectors nearly coincide, and nothing is estimated."""
 
     def __init__(self, segment, allowed: float = math.inf, least: float = 0.0, looked_at=None):
         self.segment, self.motion, self.allowed, self.least = segment, segment.exact_motion(), allowed, least
@@ -135,7 +134,6 @@ class GlobalErrorEstimate:
 
     def begin(self, segment, tau, y):
         """Nothing to do: errors go on over a segment's start."""
-        pass
 
     def accept(self, block):
         """The errors of a block's steps; a Retry where they pass what is allowed and a sharper tolerance is left."""
