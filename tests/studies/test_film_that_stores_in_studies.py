@@ -58,7 +58,7 @@ def test_campbell_crosses_zero_damping_at_the_critical_speed():
     scenario = reference()
     found = campbell.run(scenario, campbell.Settings(points=61, speed_to=12000.0), InProcess()).numbers
     model = Model(frozen_at_start(scenario.scene))
-    critical = stability_thresholds.critical_speed(one_by_one(lambda w: model.linear_scene(speed=w)), 300.0, 3e4, 40)
+    critical = stability_thresholds.thresholds(one_by_one(lambda w: model.linear_scene(speed=w)), 300.0, 3e4, 40)[0]
     crossing = next(p["speed"] for p in found["thresholds"] if p["what"] == "damping")
     assert crossing == pytest.approx(critical, rel=1e-4)
 
@@ -121,7 +121,7 @@ def test_runup_is_planned_by_the_modes_at_speed():
     scenario = reference()
     plan = planned(scenario, RunupSettings())
     model = Model(frozen_at_start(scenario.scene))
-    expected = stability_thresholds.critical_speed(one_by_one(lambda w: model.linear_scene(speed=w)), 300.0, 3e4, 40)
+    expected = stability_thresholds.thresholds(one_by_one(lambda w: model.linear_scene(speed=w)), 300.0, 3e4, 40)[0]
     assert plan["threshold"] == pytest.approx(expected, rel=1e-6) and plan["mode"] is None
 
 
