@@ -20,6 +20,7 @@ from ..numerics.kernel import (
 from . import equations
 from .condensation import RESIDUAL, WRENCH, FilmDerivatives, residual_by_unknowns, wrench_by_unknowns
 from .native import ARRAYS, CONTACT, FILM, GAP, KERNEL, LOAD, PARAMETERS, SCRATCH, SIZE, WORK, Native, array, load_value
+from .native import RATES as OF_RATES
 from .native import RESIDUAL as OF_RESIDUAL
 
 # The block goes on after that of native.py: two arrays of float64, four of int64; where the film's unknowns begin, and
@@ -48,7 +49,7 @@ def native(segment) -> Native:
     for part in arrays:
         block += [part.ctypes.data, len(part)]
     block = np.array([*block, segment.film.start, segment.pattern.nnz], dtype=np.int64)
-    return Native(0, block, arrays, residual_at.address, derivatives_at.address)
+    return Native(0, block, arrays, residual_at.address, derivatives_at.address, ring_rates_at.address)
 
 
 @inner_kernel()
@@ -73,20 +74,6 @@ def loads(tau, y, yp, block):
     s[FORCE] = s[MOMENT_X] = s[MOMENT_Y] = math.nan
     call_load(block[KERNEL], f, s, of_film(y, block))
     call_load(block[LOAD], array(block, CONTACT), f, s)
-
-
-@outer_kernel()
-def ring_rates(tau, y, yp, block):
-    """Rates `yp` (size,) of the rings and works at given unknowns of the film, whose own stay as they are."""
-    loads(tau, y, yp, block)
-    equations.rates(tau, y, array(block, PARAMETERS), array(block, SCRATCH), array(block, GAP), yp)
-
-
-@outer_kernel()
-def ring_rates_along(taus, ys, yps, block):
-    """The same at segment times `taus` (m,) (s) and unknowns `ys` (m, size), into `yps` (m, size)."""
-    for i in range(len(taus)):
-        ring_rates(taus[i], ys[i], yps[i], block)
 
 
 @inner_kernel()
@@ -207,6 +194,16 @@ def _rows_by_force(tau, y, yp, columns, block):
         rows_of_rings(tau, y, yp, moved, block)
         columns[k] = (moved - base) / (step * arm)
         s[FORCE + k] = held
+
+
+@c_function(OF_RATES)
+def ring_rates_at(tau, y_at, yp_at, data):
+    """Rates of the rings and works at given unknowns of the film, whose own stay as they are."""
+    block = carray(integers(data), BLOCK)
+    y, yp = carray(floats(y_at), block[SIZE]), carray(floats(yp_at), block[SIZE])
+    loads(tau, y, yp, block)
+    equations.rates(tau, y, array(block, PARAMETERS), array(block, SCRATCH), array(block, GAP), yp)
+    return 0
 
 
 @c_function(OF_RESIDUAL)

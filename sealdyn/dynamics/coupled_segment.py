@@ -183,10 +183,6 @@ class CoupledSegment(Segment):
         """d y'/d y (size, size)."""
         return -self._matrix(tau, y, np.zeros(self.size), 0.0, 1.0)
 
-    def ring_rates(self, tau, y, yp):
-        """Rates of rings and works at given unknowns of the film, into `yp` (size,)."""
-        coupled_native.ring_rates(tau, np.array(y), yp, self.native.block)
-
     def residual(self, tau, y, yp, res):
         """The residual into `res` (size,).  Raises SolverFailure where the film has no solution."""
         # A solver's arrays may be for reading only, which no kernel takes.
@@ -387,12 +383,6 @@ class CoupledSegment(Segment):
         self.ring_rates(tau, y, yp)
 
     # --- stored steps -------------------------------------------------------------------------------
-
-    def derivatives(self, taus, ys):
-        """Derivatives (m, size) at times and unknowns `ys` (m, size), zero for the film's; every ring has mass."""
-        out = np.zeros((len(taus), self.size))
-        coupled_native.ring_rates_along(taus, ys, out, self.native.block)
-        return out
 
     def states(self, taus, ys, yps, gaps, scratch, low):
         """As native.states_along, into `gaps`, `scratch` and `low`, with the film's unknowns among `ys` (m, size)."""

@@ -93,13 +93,20 @@ RESIDUAL = int32(float64, ADDRESS, ADDRESS, ADDRESS, ADDRESS)
 @dataclass(frozen=True)
 class Native:
     """A segment's equations for C: address of its `rates`, the `block` and the `arrays` that it points to, which it
-    keeps alive; of a film with unknowns no rates (0), and addresses of its own `residual` and its `derivatives`."""
+    keeps alive; of a film with unknowns no rates (0), and addresses of its own `residual`, its `derivatives`, and the
+    rates of the rings."""
 
     rates: int
     block: np.ndarray
     arrays: tuple
     own_residual: int = 0
     derivatives: int = 0
+    rates_of_rings: int = 0
+
+    @property
+    def ring_rates(self) -> int:
+        """Address of the rates of rings and works at given unknowns of the film, if it has any."""
+        return self.rates_of_rings or self.rates
 
     @cached_property
     def data(self) -> int:

@@ -132,12 +132,12 @@ class Segment:
 
     def rhs(self, tau, y, yp):
         """Right-hand side into `yp` (size,) at segment time `tau` (s) and unknowns `y` (size,)."""
-        # A solver's arrays may be for reading only, which no kernel takes: here, and below.
-        rates_of(self.native.rates, self.native.data, tau, np.array(y), yp)
+        self.ring_rates(tau, y, yp)
 
     def ring_rates(self, tau, y, yp):
-        """The same: the film has no unknowns."""
-        self.rhs(tau, y, yp)
+        """Rates of rings and works at given unknowns of the film, if it has any, into `yp` (size,)."""
+        # A solver's arrays may be for reading only, which no kernel takes: here, and below.
+        rates_of(self.native.ring_rates, self.native.data, tau, np.array(y), yp)
 
     def residual(self, tau, y, yp, res):
         """Residual into `res` (size,) at unknowns `y` and their derivatives `yp` (size,)."""
@@ -258,9 +258,10 @@ class Segment:
         return np.ascontiguousarray(ys[:, : self.n]), rate
 
     def derivatives(self, taus, ys) -> np.ndarray:
-        """The right-hand side (m, size) at times and unknowns `ys` (m, size); every ring has mass."""
+        """The right-hand side (m, size) at times and unknowns `ys` (m, size), zero for the film's; every ring has
+        mass."""
         out = np.zeros((len(taus), self.size))
-        rates_along(self.native.rates, self.native.data, taus, ys, out)
+        rates_along(self.native.ring_rates, self.native.data, taus, ys, out)
         return out
 
     def energies(self, taus, ys) -> np.ndarray:
