@@ -79,9 +79,8 @@ class Segment:
         rows = harmonics_of_segment(scene.shaft, scene.housing, scene.rotor, scene.stator, interval)
         if self.model.loads is not None:
             rows = np.vstack([rows, self.model.loads])
-        angles = [modulo_turn(interval.rotor_angle), modulo_turn(interval.stator_angle)]
-        coned = [film.coning_per_speed_squared]
-        head = np.array([x for pair in pairs for x in pair] + [*coned, *angles, len(rows)])
+        head = [x for pair in pairs for x in pair]
+        head += [film.coning_per_speed_squared, *map(modulo_turn, interval.angles), len(rows)]
         p = np.concatenate([self.model.unknowns.ring_block, imposed_block(head, rows, self.sweeps, scene, interval)])
         for k in self.model.unknowns.elastic_rings:
             from .secondary_seal import elements_block

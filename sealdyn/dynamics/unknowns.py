@@ -49,7 +49,7 @@ class Unknowns:
         self.extended = bool(scene.contact or self.seals)
         self.turning_supports = turning_supports(scene)
         # Contact, friction, supports that change as they turn and offset faces couple what a linear film keeps apart.
-        self.linear = linear = linear and not (self.extended or self.turning_supports or scene.film.offset)
+        self.linear = linear and not (self.extended or self.turning_supports or scene.film.offset)
         rings = {STATOR: scene.stator, ROTOR: scene.rotor}
         self.floats = {k: ring.support is not None for k, ring in rings.items()}
         starts = {STATOR: scene.initial.stator, ROTOR: scene.initial.rotor}
@@ -60,10 +60,9 @@ class Unknowns:
         cones = (film.coning, scene.shaft.speed) if follows_speed(film) else (film.coning,)
         loads = (film.inner_pressure, film.outer_pressure, film.temperature, closing.spring, *cones)
         outside = [q for ring in rings.values() if (load := load_of(ring)) for q in load.varying()]
-        loaded = any(isinstance(q, PiecewiseLinear) for q in loads)
+        self.loaded = any(isinstance(q, PiecewiseLinear) for q in loads)
         others = (scene.shaft.speed, scene.stator.speed, *fluid_conditions(film).values(), scene.rotor.runout)
         tilts = (scene.rotor.misalignment, scene.stator.misalignment)
-        self.loaded = loaded
         self.constant = not any(isinstance(q, PiecewiseLinear) for q in (*loads, *others, *tilts, *outside))
         # Samples have no frequency and sweeps have many: nothing that needs one, a steady response, a period, is there.
         self.constant = self.constant and not (records(scene) or scene.housing.sweeps)
@@ -71,7 +70,7 @@ class Unknowns:
         pressed = film_unknowns is not None
         self.faces_tilt = pressed and faces_tilt(scene)
         tilted = alike_sectors(scene, pressed) == 1
-        self._choose(tilted, shifted or _axial_motion_is_imposed(scene), loaded)
+        self._choose(tilted, shifted or _axial_motion_is_imposed(scene))
         self.film_unknowns = film_unknowns
         self._place((scene.stator, scene.rotor))
         if self.faces_tilt:
@@ -109,7 +108,7 @@ class Unknowns:
         parts = [i for i in range(3) if (i == 0 and self.with_axial) or (i > 0 and self.with_tilt)]
         return [3 * a + i for a in range(sum(self.floats.values())) for i in parts]
 
-    def _choose(self, tilted: bool, shifted: bool, loaded: bool):
+    def _choose(self, tilted: bool, shifted: bool):
         """Which kinds of motion the scene has, and why."""
         arrangement = {(True, False): "FMS", (False, True): "FMR", (True, True): "FMSR"}
         floating = " and ".join(RING_NAMES[k] for k in (STATOR, ROTOR) if self.floats[k])
@@ -117,7 +116,7 @@ class Unknowns:
         self.with_tilt, self.with_axial = tilted, True
         if not tilted:
             self.reasons.append("aligned faces and no angular forcing: axial unknowns only")
-        elif self.linear and not (shifted or loaded):
+        elif self.linear and not (shifted or self.loaded):
             self.with_axial = False
             self.reasons.append("linear film and no axial forcing: axial motion decouples and stays at rest")
         elif self.linear:
