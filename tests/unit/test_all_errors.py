@@ -1,15 +1,14 @@
 """Everything that is wrong with a file, at once: each key once, the most telling first."""
 
-from pathlib import Path
-
 import pytest
+from command import SCENARIOS
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sealdyn.scenario.errors import MOST
 from sealdyn.scenario.reader import ScenarioError, parse_scenario
 
-FMR = (Path(__file__).parents[2] / "scenarios" / "fmr_reference.toml").read_text()
+FMR = (SCENARIOS / "fmr_reference.toml").read_text()
 
 
 def errors(text: str, *overrides) -> list[ScenarioError]:

@@ -23,11 +23,7 @@ META = {"version": "0.1.0", "overrides": [], "libraries": {"numpy": "2"}}
 
 
 def writer(path, **options):
-    given = {
-        "scenario_text": SCENARIO,
-        "resolved": {"film": {"clearance": 1e-5}},
-        "meta": META,
-    }
+    given = {"scenario_text": SCENARIO, "resolved": {"film": {"clearance": 1e-5}}, "meta": META}
     return ArchiveWriter(path, **(given | {"series": SERIES} | options))
 
 

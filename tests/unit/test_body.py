@@ -1,10 +1,10 @@
 """A ring from its drawing: mass and inertias of a hollow cylinder."""
 
-from pathlib import Path
 from typing import get_args
 
 import numpy as np
 import pytest
+from command import SCENARIOS
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -14,7 +14,7 @@ from sealdyn.scene import scene as scenes
 from sealdyn.scene.rings import INERTIAL, MATERIALS, Body, Material
 from sealdyn.studies.stability import si_axis
 
-FMR = (Path(__file__).parents[2] / "scenarios" / "fmr_reference.toml").read_text()
+FMR = (SCENARIOS / "fmr_reference.toml").read_text()
 OWN = 'mass = "1 kg"\ntransverse_inertia = "8e-4 kg*m^2"\npolar_inertia = "16e-4 kg*m^2"\n'
 BODY = 'body = { inner_diameter = "52 mm", outer_radius = "40 mm", length = "35 mm", material = "silicon carbide" }\n'
 

@@ -2,11 +2,11 @@
 
 import math
 from dataclasses import replace
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from command import SCENARIOS
 from scenes import (
     CLEARANCE,
     INERTIA,
@@ -273,7 +273,7 @@ def test_a_trial_that_errs_too_much_is_done_again_sharper(monkeypatch):
 @pytest.mark.parametrize("name", ["fms_reference", "fmr_reference", "fmsr_both_flexible"])
 def test_a_tolerance_on_trial_keeps_the_energy(name, accuracy):
     """Ten times the accuracy, although the motion is but a tenth of a scale."""
-    path = Path(__file__).parents[2] / "scenarios" / f"{name}.toml"
+    path = SCENARIOS / f"{name}.toml"
     summary = simulate_in_memory(read_scenario(path, [f"run.accuracy={accuracy}"]))
     assert summary["energy_residual"] < 10 * accuracy
 
@@ -353,7 +353,7 @@ def test_what_to_try_fits_the_scene(method, advice):
 
 
 def test_a_run_stopped_while_it_is_measured_is_measured_when_it_goes_on(tmp_path):
-    scenario = read_scenario(Path(__file__).parents[2] / "scenarios" / "massless_ring.toml", ["run.turns=30"])
+    scenario = read_scenario(SCENARIOS / "massless_ring.toml", ["run.turns=30"])
     reached = [0.0]
     again = []
 

@@ -3,7 +3,6 @@
 import json
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,19 +11,11 @@ from made_up_run import FILM, SCENARIO, SUMMARY, drop, first, pressures, whirlin
 
 from sealdyn.archive import ArchiveWriter, Series
 from sealdyn.numerics.time_series import order_spectrum
-from sealdyn.report.charts import (
-    film,
-    orbit,
-    overview,
-    poincare,
-    record,
-    spectrum,
-)
+from sealdyn.report.charts import film, orbit, overview, poincare, record, spectrum
 from sealdyn.report.charts.film import thickness
 from sealdyn.report.charts.orbit import hull
 from sealdyn.report.charts.record import Run
 
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 KINDS = {"overview": overview, "orbit": orbit, "film": film, "spectrum": spectrum, "poincare": poincare}
 
 

@@ -1,16 +1,16 @@
 """Diameters in place of radii: the same scenes, whichever way they come in."""
 
 import json
-from pathlib import Path
 
 import pytest
+from command import SCENARIOS
 
 import sealdyn
 from sealdyn.scenario.reader import ScenarioError, parse_scenario, with_values
 from sealdyn.studies._declared import json_schema
 from sealdyn.studies.tolerance.scatter import read_scatter
 
-FMR = (Path(__file__).parents[2] / "scenarios" / "fmr_reference.toml").read_text()
+FMR = (SCENARIOS / "fmr_reference.toml").read_text()
 DRAWN = FMR.replace('inner_radius = "32 mm"', 'inner_diameter = "64 mm"').replace(
     'outer_radius = "40 mm"', 'outer_diameter = "80 mm"'
 ).replace('radius = "40 mm" ', 'diameter = "80 mm" ')  # fmt: skip

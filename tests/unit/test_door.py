@@ -1,9 +1,8 @@
 """What comes in is bounded before it is read: each kind in two forms, as text and as tables, is one line of ours."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from command import SCENARIOS
 
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import Scenario, parse_scenario, scenario_of
@@ -11,7 +10,7 @@ from sealdyn.scenario.settings import study_settings
 from sealdyn.studies.sweep import Settings
 from sealdyn.unit_names import spelled_like
 
-SEAL = (Path(__file__).parents[2] / "scenarios" / "fms_reference.toml").read_text()
+SEAL = (SCENARIOS / "fms_reference.toml").read_text()
 
 
 def nested(depth, table):
@@ -71,7 +70,7 @@ def with_flags(**flags):
         with_value("shaft.speed", {None: 1, "time": [0, 1]}), with_value("film", {3: 1}), with_value(None, 1),
         with_value("film.\ud800", 1), with_value("film.model", "\udfff"), with_set("film.\udcff=1"),
         with_set("film.model=\udcff"), with_line("x = '\ud800'"), with_value("film.x", np.array([None, "\ud800"])),
-        with_set(1), lambda: scenario_of(str(Path(__file__)), {"film": nested(3000, True)}),
+        with_set(1), lambda: scenario_of(__file__, {"film": nested(3000, True)}),
     ],
 )  # fmt: skip
 def test_what_has_no_bounds_is_refused(reads):

@@ -1,10 +1,10 @@
 """Clearance, balance ratio and spring force: two give the third; every root is found, against a film solved here."""
 
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
+from command import SCENARIOS
 from oracles import opening_force
 from scenes import CLEARANCE, R_I, R_O, SUPPORT, film, fmr, fms, fmsr, run, started
 
@@ -203,7 +203,7 @@ def test_a_flexible_rotor_finds_the_same_clearance():
 @pytest.mark.parametrize("spring", ["60 N", "400 N", "4000 N"])
 def test_rough_faces_pressed_into_each_other_balance_where_the_run_starts(spring):
     """Also where the film is thinner than 0.6 c and its law is continued: the run's own forces agree."""
-    path = Path(__file__).parents[2] / "scenarios" / "run_in.toml"
+    path = SCENARIOS / "run_in.toml"
     ready = started(read_scenario(path, [f'closing.spring_force="{spring}"']).scene, 1e-3)
     if spring == "4000 N":
         assert ready.model.clearance < 0.5 * ready.model.face[FLOOR]

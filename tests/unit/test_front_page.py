@@ -5,6 +5,7 @@ import re
 from pathlib import Path
 
 import pytest
+from command import SCENARIOS
 
 import sealdyn
 from sealdyn import studies
@@ -16,7 +17,7 @@ from sealdyn.scenario.reader import parse_scenario
 from sealdyn.studies import study_names
 from sealdyn.studies._runner import study_info
 
-README = (Path(__file__).parents[2] / "README.md").read_text()
+README = (SCENARIOS.parent / "README.md").read_text()
 
 
 def test_seal_of_the_readme_gives_the_printed_answer(tmp_path):
@@ -77,6 +78,6 @@ def test_times_in_the_readme_are_those_beside_the_studies(name):
 
 
 def test_every_rule_is_in_the_table_of_the_readme():
-    page = (Path(__file__).parents[2] / "scenarios" / "README.md").read_text()
+    page = (SCENARIOS / "README.md").read_text()
     section = page.split("## Design rules")[1].split("\n## ")[0]
     assert re.findall(r"^\| `(\w+)`", section, re.MULTILINE) == [*sorted(RULES), *sorted(OF_GAS)]

@@ -1,10 +1,10 @@
 """The film of a gas dam around the circle, against sums of the marched dam; gases; what a gas refuses."""
 
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
+from command import SCENARIOS
 from marched_dam import Dam, flow
 from scenes import run
 
@@ -26,7 +26,7 @@ from sealdyn.solvers.contract import Status
 
 R_I, R_O, HIGH, LOW, HOT = 0.083, 0.0845, 1.4e6, 1e5, 700.0
 CONING, CLEARANCE = -2e-3, 6.5e-6
-REFERENCE = Path(__file__).parents[2] / "scenarios" / "gas_dam_reference.toml"
+REFERENCE = SCENARIOS / "gas_dam_reference.toml"
 
 
 def film(**changes):

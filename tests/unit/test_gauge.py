@@ -1,8 +1,7 @@
 """Gauge pressures: read as absolute ones wherever a scenario or a study has them, and never as differences."""
 
-from pathlib import Path
-
 import pytest
+from command import SCENARIOS
 
 import sealdyn
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
@@ -10,7 +9,7 @@ from sealdyn.scenario.reader import ScenarioError, parse_scenario, with_values
 from sealdyn.scenario.settings import axis, values_in_si
 from sealdyn.studies.tolerance.scatter import read_scatter
 
-FMR = (Path(__file__).parents[2] / "scenarios" / "fmr_reference.toml").read_text()
+FMR = (SCENARIOS / "fmr_reference.toml").read_text()
 
 
 def parse(text, *overrides):

@@ -7,11 +7,11 @@ import signal
 import subprocess
 import sys
 import time
-from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
+from command import SCENARIOS
 
 from sealdyn.archive import ArchiveError, column, read_info
 from sealdyn.archive.files import must_be_sound
@@ -100,7 +100,7 @@ def test_workers_do_not_outlive_their_parent(number):
     assert until_gone(process.pid)
 
 
-RUB = Path(__file__).parents[2] / "scenarios" / "rub.toml"
+RUB = SCENARIOS / "rub.toml"
 SEAL = ["stator.secondary_seal.radius=45 mm", "stator.secondary_seal.line_friction=40 N/m", "run.turns=45"]
 
 

@@ -3,11 +3,11 @@
 import math
 from fractions import Fraction
 from itertools import pairwise
-from pathlib import Path
 
 import mpmath
 import numpy as np
 import pytest
+from command import SCENARIOS
 from scenes import fmr, fms, ring, started
 from scipy.integrate import quad
 
@@ -224,7 +224,7 @@ def test_a_billion_turns_cost_no_more_than_a_few(monkeypatch):
     """Intervals are made when they are asked for, and what is gathered over a run asks for few of them."""
     asked, make = [], intervals.Interval.__init__
     monkeypatch.setattr(intervals.Interval, "__init__", lambda *how, **named: asked.append(0) or make(*how, **named))
-    scenario = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
+    scenario = SCENARIOS / "fms_reference.toml"
     run = prepare_run(read_scenario(scenario, ["run.turns=1e9"]))[0]
     assert len(run.intervals) in (500_000, 500_001) and len(asked) < 5000
     assert run.intervals[-1].rotor_angle == 1000 * run.intervals[-1].start

@@ -3,10 +3,10 @@
 import math
 from dataclasses import replace
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
+from command import SCENARIOS
 from scenes import fmr, fms, prepared, run
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
@@ -20,7 +20,7 @@ from sealdyn.scene.film import Coefficients
 from sealdyn.scene.forces import Load, LoadSamples, LoadTone, SecondarySeal
 from sealdyn.scene.scene import SceneError, frozen_at, unforced
 
-FMS = (Path(__file__).parents[2] / "scenarios" / "fms_reference.toml").read_text()
+FMS = (SCENARIOS / "fms_reference.toml").read_text()
 FILM = Coefficients(tilt_stiffness=5000.0, tilt_damping=3.6, axial_stiffness=2e7, axial_damping=9e3)
 STEP = PiecewiseLinear((0.0, 0.004, 0.004, 0.01), (0.0, 20.0, 50.0, -30.0))
 TONE = LoadTone(frequency=300.0, force=25.0, moment=0.03, direction=0.4, phase=0.2)

@@ -1,11 +1,11 @@
 """Many runs in one compiled loop: to the bit what each is by itself at the same tolerance, and what cannot be in it."""
 
 import signal
-from pathlib import Path
 from threading import Timer
 
 import numpy as np
 import pytest
+from command import SCENARIOS
 
 import sealdyn
 from sealdyn.dynamics.tally import Tally
@@ -21,7 +21,6 @@ from sealdyn.solvers.contract import Status, tolerance_for
 from sealdyn.solvers.integrate import solve
 from sealdyn.solvers.methods import why_slow
 
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 pytestmark = pytest.mark.skipif(bool(why_slow()), reason="no compiled loop here")
 
 RAMP = ['shaft.speed={time=[0, 0.01, 0.02], value=["3000 rpm", "9000 rpm", "9000 rpm"]}', "run.duration=0.03"]

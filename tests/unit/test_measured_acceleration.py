@@ -1,16 +1,16 @@
 """Measured accelerations as motion: integrated twice, drift removed."""
 
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
+from command import SCENARIOS
 
 from sealdyn.numerics.twice_integrated import twice_integrated
 from sealdyn.scenario.reader import ScenarioError, parse_scenario
 from sealdyn.scene.excitation import Motion
 
-FMR = (Path(__file__).parents[2] / "scenarios" / "fmr_reference.toml").read_text()
+FMR = (SCENARIOS / "fmr_reference.toml").read_text()
 CORNER, AMPLITUDE = 5.0, 1e-6
 
 

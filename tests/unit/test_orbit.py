@@ -2,10 +2,10 @@
 plain transients."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
+from command import SCENARIOS
 from scenes import fmr, fms, fmsr, free_ring, started
 
 import sealdyn
@@ -17,7 +17,6 @@ from sealdyn.simulation.selection import choose_method
 from sealdyn.solvers.contract import Recorder
 from sealdyn.solvers.integrate import solve
 
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 PERIODIC = ["fmr_reference", "fms_reference", "fmsr_both_flexible", "massless_ring"]
 
 

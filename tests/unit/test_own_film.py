@@ -7,10 +7,10 @@ import pickle
 import shutil
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
-from pathlib import Path
 
 import numpy as np
 import pytest
+from command import SCENARIOS
 from scipy.integrate import quad
 
 import sealdyn
@@ -21,7 +21,6 @@ from sealdyn.films import film_named
 from sealdyn.scenario.own_options import Missing
 from sealdyn.studies._declared import schema
 
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 FILE = SCENARIOS / "own" / "films" / "fed_film.py"
 SUPPLY, REFERENCE = "film.fed_film.supply_pressure", SCENARIOS / "fms_reference.toml"
 MORE = "from dataclasses import dataclass\n\nfrom sealdyn.films.fed_film import FILM\n"

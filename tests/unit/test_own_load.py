@@ -3,11 +3,11 @@
 import json
 import pickle
 from importlib.util import find_spec
-from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
+from command import SCENARIOS
 
 import sealdyn
 from sealdyn import ScenarioError, read_scenario
@@ -15,7 +15,6 @@ from sealdyn.extensions import VARIABLE
 from sealdyn.numerics.parallel import content_keys
 from sealdyn.scene.scene import unforced
 
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 OWN, REFERENCE = SCENARIOS / "own", SCENARIOS / "fms_reference.toml"
 PULSE = ["run.turns=4", "stator.load.model=gear_pulse", 'stator.load.gear_pulse.force="20 N"']
 TONE = """from dataclasses import dataclass

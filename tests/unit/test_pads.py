@@ -2,11 +2,11 @@
 
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 from collocated_gas import collocated
+from command import SCENARIOS
 from gas_faces import PARTS, gap_state, gas_film, steady
 from scenes import film as liquid
 from scenes import fms
@@ -123,6 +123,6 @@ def test_pads_that_cannot_be(key, changes):
 def test_the_clearance_of_a_padded_face_is_held_and_studies_speak():
     held = Model(scene(padded(CLOSED, cells=(8, 48))), 1e-3)
     assert abs(held.axial_shift()) < 1e-9 * CLEARANCE
-    scenario = read_scenario(Path(__file__).parents[2] / "scenarios" / "rayleigh_pads.toml")
+    scenario = read_scenario(SCENARIOS / "rayleigh_pads.toml")
     with pytest.raises(SceneError, match="the same all around"):
         run_study("transmissibility", scenario, None, workers=1)

@@ -1,16 +1,15 @@
 """Cautions of runs that leave what their film is valid for, beside runs that do not, and the numbers in them."""
 
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
+from command import SCENARIOS
 
 from sealdyn.dynamics.run_state import Concern
 from sealdyn.scenario.reader import read_scenario, with_values
 from sealdyn.simulation import plausibility, simulate
 
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 SEAL = SCENARIOS / "fms_reference.toml"
 # So slow and thin a fluid that nothing is left to say of the reference seal.
 TAME = ["shaft.speed=100 rad/s", "film.viscosity=5 mPa*s", "run.turns=1", "run.accuracy=1e-3"]

@@ -1,10 +1,10 @@
 """The progress bar: what it says of a run that is done more than once, and of the wait after the last step."""
 
-from pathlib import Path
 from time import sleep
 
 import numba.core.event
 import pytest
+from command import SCENARIOS
 
 from sealdyn.kernel_cache import compiling
 from sealdyn.numerics.parallel import Checkpoint, processes
@@ -12,8 +12,6 @@ from sealdyn.scenario.reader import read_scenario
 from sealdyn.studies import _runner
 from sealdyn.studies._runner import StudyContext, run_study
 from sealdyn.terminal import Progress
-
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 
 
 @pytest.fixture

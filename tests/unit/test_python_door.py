@@ -4,16 +4,15 @@ import inspect
 import io
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray
+from command import SCENARIOS
 from scipy.optimize import brentq
 
 import sealdyn
 
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 SCENARIO = SCENARIOS / "axial_only.toml"
 # Tilts and turns, in a moment.
 TILTED, SHORT = SCENARIOS / "fms_reference.toml", {"run.turns": 4}

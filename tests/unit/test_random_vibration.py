@@ -3,10 +3,10 @@
 import math
 from dataclasses import replace
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
+from command import SCENARIOS
 from scenes import fmr, run
 from scipy.integrate import quad
 from scipy.signal import welch
@@ -19,7 +19,7 @@ from sealdyn.scenario.reader import ScenarioError, parse_scenario
 from sealdyn.scene.excitation import AngularRandom, AxialRandom, Housing, mean_square, tones_of
 from sealdyn.simulation.simulate import prepare_run
 
-FMR = (Path(__file__).parents[2] / "scenarios" / "fmr_reference.toml").read_text()
+FMR = (SCENARIOS / "fmr_reference.toml").read_text()
 # As test standards draw it: up, flat, down, and a piece that falls as 1/f.
 CORNERS, DENSITY = (20.0, 80.0, 350.0, 700.0, 2000.0), (0.1, 0.4, 0.4, 0.2, 0.01)
 STANDARD = AxialRandom(CORNERS, DENSITY)

@@ -1,9 +1,8 @@
 """What a summary has beside the integration: it may fail alone, and is of the conditions at the end of the run."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from command import SCENARIOS
 
 import sealdyn
 from sealdyn.scenario.reader import read_scenario
@@ -11,8 +10,6 @@ from sealdyn.scene.scene import SceneError
 from sealdyn.simulation import stability, summary
 from sealdyn.simulation.simulate import simulate, simulate_in_memory
 from sealdyn.solvers import sundials_direct
-
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 
 
 def summary_of(name, *overrides):

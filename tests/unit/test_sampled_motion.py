@@ -2,23 +2,16 @@
 
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
+from command import SCENARIOS
 from scenes import fmr, fms, run
 from scipy.interpolate import make_interp_spline
 
 from sealdyn.dynamics.equations import LEG_AT
-from sealdyn.dynamics.imposed_motion import (
-    MOTION_AT,
-    PER_RING,
-    Z_ACCELERATION,
-    Z_RATE,
-    Z,
-    imposed_state,
-)
+from sealdyn.dynamics.imposed_motion import MOTION_AT, PER_RING, Z_ACCELERATION, Z_RATE, Z, imposed_state
 from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.run_state import Concern
 from sealdyn.dynamics.step_bounds import imposed_gap
@@ -31,7 +24,7 @@ from sealdyn.simulation.run import evaluate
 from sealdyn.simulation.simulate import prepare_run
 from sealdyn.studies._runner import run_study
 
-FMR = (Path(__file__).parents[2] / "scenarios" / "fmr_reference.toml").read_text()
+FMR = (SCENARIOS / "fmr_reference.toml").read_text()
 TONE, AMPLITUDE, TILT = 400.0, 2e-7, 3e-6
 
 

@@ -5,15 +5,14 @@ import math
 import subprocess
 import sys
 import time
-from pathlib import Path
 
 import pytest
+from command import SCENARIOS
 
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scenario.reader import ScenarioError, parse_scenario, read_scenario
 from sealdyn.studies._declared import json_schema
 
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 FMR = (SCENARIOS / "fmr_reference.toml").read_text()
 FMS = (SCENARIOS / "fms_reference.toml").read_text()
 SHIPPED = sorted(SCENARIOS.glob("*.toml"))

@@ -2,17 +2,17 @@
 
 import functools
 import tomllib
-from pathlib import Path
 
 import numpy as np
 import pytest
+from command import SCENARIOS
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from sealdyn import Scenario, ScenarioError, read_scenario
 from sealdyn.scenario.reader import parse_scenario
 
-SHIPPED = sorted((Path(__file__).parents[2] / "scenarios").glob("*.toml"))
+SHIPPED = sorted(SCENARIOS.glob("*.toml"))
 CHANGES = {
     "film.clearance": st.one_of(st.floats(1e-6, 1e-3), st.integers(2, 200).map("{} um".format)),
     "shaft.speed": st.one_of(st.floats(1.0, 1e4), st.just({"time": [0.0, 1.0], "value": ["10 rpm", 2.5]})),

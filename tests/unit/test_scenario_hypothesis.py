@@ -3,15 +3,15 @@
 import json
 import tomllib
 from copy import deepcopy
-from pathlib import Path
 
 import pytest
+from command import SCENARIOS
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from sealdyn.scenario.reader import Scenario, ScenarioError, parse_scenario
 
-SHIPPED = [p.read_text() for p in sorted((Path(__file__).parents[2] / "scenarios").glob("*.toml"))]
+SHIPPED = [p.read_text() for p in sorted(SCENARIOS.glob("*.toml"))]
 TREES = [tomllib.loads(text) for text in SHIPPED]
 WORDS = sorted({w for text in SHIPPED for w in text.replace("=", " ").replace(".", " ").split()})
 ODD_NUMBERS = [0, -1, 1, 1e308, -1e308, 5e-324, 10**400, float("nan"), float("inf"), True, False]
@@ -130,7 +130,7 @@ def test_deep_nesting(key, depth):
 @pytest.mark.core
 def test_the_unbroken_ones_pass(monkeypatch):
     # Files are named as beside a scenario.
-    monkeypatch.chdir(Path(__file__).parents[2] / "scenarios")
+    monkeypatch.chdir(SCENARIOS)
     for tree in TREES:
         text = "\n".join(f"{quoted(k)} = {as_toml(v)}" for k, v in tree.items())
         assert isinstance(parse_scenario(text, "whole.toml"), Scenario)

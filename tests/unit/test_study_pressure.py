@@ -1,10 +1,10 @@
 """The study of film pressure: words for the gap state, bad ones in one line, rough faces, and its figure."""
 
 import functools
-from pathlib import Path
 
 import numpy as np
 import pytest
+from command import SCENARIOS
 from drawn import text_trouble
 
 from sealdyn import read_scenario
@@ -14,8 +14,6 @@ from sealdyn.scenario.errors import ScenarioError
 from sealdyn.studies import pressure
 from sealdyn.studies._runner import run_study
 from sealdyn.studies.pressure import Settings
-
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 
 
 @functools.cache

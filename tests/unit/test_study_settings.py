@@ -4,9 +4,9 @@ import dataclasses
 import functools
 import math
 from functools import cache
-from pathlib import Path
 
 import pytest
+from command import SCENARIOS
 
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import read_scenario
@@ -25,7 +25,7 @@ from sealdyn.studies._declared import help_text, settings_of
 from sealdyn.studies._declared import schema as whole_schema
 from sealdyn.studies._runner import study_info, study_module
 
-SCENARIO = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
+SCENARIO = SCENARIOS / "fms_reference.toml"
 
 
 @functools.cache

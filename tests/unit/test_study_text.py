@@ -20,11 +20,7 @@ def test_every_study_has_a_chart(name):
 
 @pytest.mark.parametrize(
     ("comment", "question"),
-    [
-        ("Does it ride?  Expected: yes.", "Does it ride?"),
-        ("A pump seal. With a cone.", "A pump seal"),
-        ("", ""),
-    ],
+    [("Does it ride?  Expected: yes.", "Does it ride?"), ("A pump seal. With a cone.", "A pump seal"), ("", "")],
 )
 def test_a_comment_without_a_question_gets_no_mark(comment, question):
     assert question_of(comment) == question

@@ -2,10 +2,10 @@
 
 import math
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
+from command import SCENARIOS
 
 import sealdyn
 from sealdyn.answers import Line
@@ -20,7 +20,6 @@ from sealdyn.scene.fluid import density_of, gas_of
 from sealdyn.scene.rings import SMALL_TILT
 from sealdyn.simulation.simulate import prepare_run, simulate_in_memory
 
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 SEAL = SCENARIOS / "fms_reference.toml"
 
 

@@ -4,11 +4,11 @@ import math
 import re
 from dataclasses import replace
 from fractions import Fraction
-from pathlib import Path
 
 import mpmath
 import numpy as np
 import pytest
+from command import SCENARIOS
 from scenes import fmr, run, started
 
 from sealdyn.archive import column
@@ -46,7 +46,7 @@ from sealdyn.simulation.film_error import steady_tilt
 from sealdyn.simulation.run import evaluate
 from sealdyn.simulation.simulate import prepare_run, simulate
 
-FMR = (Path(__file__).parents[2] / "scenarios" / "fmr_reference.toml").read_text()
+FMR = (SCENARIOS / "fmr_reference.toml").read_text()
 UP = AxialSweep((20.0, 400.0), displacement=3e-7, start=0.01, duration=0.4)
 SWEEPS = {
     "displacement kept": UP,
@@ -245,7 +245,7 @@ def test_steady_starts_and_ends_are_beside_a_sweep():
 
 
 MEASURED = "[housing.motion]\ntime = [0, 0.02, 0.04, 0.06, 0.08, 0.1]\naxial = [0, 1e-7, 0, -1e-7, 0, 0]"
-PUMP = re.search(r"```toml\n(.*?)```", (Path(__file__).parents[2] / "README.md").read_text(), re.DOTALL)[1]
+PUMP = re.search(r"```toml\n(.*?)```", (SCENARIOS.parent / "README.md").read_text(), re.DOTALL)[1]
 
 
 @pytest.mark.parametrize("moved", [SHORT, MEASURED], ids=["sweep", "samples"])

@@ -1,9 +1,8 @@
 """Means and largest values of a run: of the motion, whatever is sampled."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from command import SCENARIOS
 from scipy.integrate import simpson
 
 import sealdyn
@@ -11,7 +10,6 @@ from sealdyn.numerics.hermite import points
 from sealdyn.scenario.reader import read_scenario
 from sealdyn.simulation.result import leaves, output
 
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 SCENES = {
     "fms_reference": ["run.turns=3"],
     "fmr_reference": ["run.turns=3", "run.accuracy=1e-4"],

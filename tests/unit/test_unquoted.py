@@ -22,12 +22,7 @@ def refusal(text: str) -> ScenarioError:
         ("[film]\nviscosity = .8 mPa.s\n", "film.viscosity", 2, ".8 mPa.s"),
         ("shaft.speed = 2950 rpm\n", "shaft.speed", 1, "2950 rpm"),
         ("[[rotor.waviness]]\norder = 2\namplitude = -1 um", "rotor.waviness.amplitude", 3, "-1 um"),
-        (
-            "[stator]\nsupport = { axial_stiffness = 30 N/mm, x = 1 }",
-            "stator.support.axial_stiffness",
-            2,
-            "30 N/mm",
-        ),
+        ("[stator]\nsupport = { axial_stiffness = 30 N/mm, x = 1 }", "stator.support.axial_stiffness", 2, "30 N/mm"),
         ("[shaft]\nspeed = { time = [0, 1 s], value = [0, 1] }", "shaft.speed.time", 2, "1 s"),
         ("[shaft.speed]\ntime = [\n0,\n1 s,\n]", "shaft.speed.time", 4, "1 s"),
     ],

@@ -2,11 +2,11 @@
 
 import math
 import random
-from pathlib import Path
 from types import SimpleNamespace
 from typing import get_type_hints
 
 import pytest
+from command import SCENARIOS
 
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scenario.keys import is_list, tables
@@ -18,7 +18,6 @@ from sealdyn.studies import study_names
 from sealdyn.studies._runner import setting_warnings, study_module
 from sealdyn.units import ListedQuantity, SampleTime, VaryingQuantity, quantity_of
 
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 SEAL = (SCENARIOS / "fms_reference.toml").read_text()
 KEYS = [
     (kind, f"{table}.{key}", holds)

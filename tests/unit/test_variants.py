@@ -2,9 +2,9 @@
 
 import pickle
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
+from command import SCENARIOS
 from scenes import fmr, fms
 
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
@@ -18,7 +18,7 @@ from sealdyn.scene.patterns import Waviness
 from sealdyn.scene.rings import AxialRunout, Support
 from sealdyn.scene.scene import SceneError, counterpart, part, tables_at_end, with_values, without
 
-TEXT = (Path(__file__).parents[2] / "scenarios" / "fms_reference.toml").read_text()
+TEXT = (SCENARIOS / "fms_reference.toml").read_text()
 RAMP = PiecewiseLinear((0.0, 0.5), (100.0, 900.0))
 ROUGH = Contact(roughness=2e-7, compressive_strength=3e8)
 SHAKEN = replace(fms(), housing=Housing(axial=[AxialVibration(50.0, 1e-6), AxialVibration(60.0, 2e-6)]))
@@ -162,7 +162,7 @@ def test_a_ring_keeps_the_waves_of_its_face_on_the_other_side(made):
 
 def test_heated_rings_change_places_whole():
     """What heats and cools a ring goes with it, and the partner keeps its body: another arrangement was refused."""
-    read = reader.read_scenario(Path(__file__).parents[2] / "scenarios" / "pump_seal.toml")
+    read = reader.read_scenario(SCENARIOS / "pump_seal.toml")
     turned, scene = counterpart(read.scene), read.scene
     assert (turned.film.heat.stator, turned.film.heat.rotor) == (scene.film.heat.rotor, scene.film.heat.stator)
     assert (turned.stator.body, turned.rotor.body) == (scene.rotor.body, scene.stator.body)

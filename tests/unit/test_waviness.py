@@ -2,26 +2,17 @@
 
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
+from command import SCENARIOS
 from scenes import CLEARANCE, NOTHING, R_I, R_O, SPEED, film, fmr, fms, prepared, ring, run, started
 
 import sealdyn
 from sealdyn.dynamics.extrema import H_TAU, H_THETA, MOST_SCAN, PER_RADIAN, H
 from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.native import thinnest_value
-from sealdyn.dynamics.tally import (
-    DEEPEST,
-    DEPTH_H,
-    DEPTH_THETA,
-    LIFTED,
-    ROW,
-    STATE,
-    TOUCHED,
-    locate_contacts,
-)
+from sealdyn.dynamics.tally import DEEPEST, DEPTH_H, DEPTH_THETA, LIFTED, ROW, STATE, TOUCHED, locate_contacts
 from sealdyn.faces import geometry as G
 from sealdyn.faces.film_thickness import film_thickness, h_min, lay_waves, wave_parts_along, waves_rate
 from sealdyn.films import all_film_names, film_named, linear
@@ -373,7 +364,7 @@ def test_touches_of_waves_between_steps():
 
 # --- what a scenario may say ----------------------------------------------------------------------------
 
-TEXT = (Path(__file__).parents[2] / "scenarios" / "fmr_reference.toml").read_text()
+TEXT = (SCENARIOS / "fmr_reference.toml").read_text()
 OWN = "film.coefficients={tilt_stiffness=1e3, tilt_damping=0.5, axial_stiffness=2e6, axial_damping=800.0}"
 WAVE = "\n[[rotor.waviness]]\norder = 3\namplitude = '2 um'\n[[stator.waviness]]\norder = 2\namplitude = '1 um'\n"
 

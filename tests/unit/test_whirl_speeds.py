@@ -3,10 +3,10 @@ root finder, over random seals."""
 
 from dataclasses import replace
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
+from command import SCENARIOS
 from scenes import SUPPORT, film, fmr, fms, fmsr, ring
 from scipy.optimize import brentq
 
@@ -17,8 +17,6 @@ from sealdyn.numerics.piecewise_linear import crossing
 from sealdyn.scene.film import Coefficients
 from sealdyn.scene.rings import Rotor, Stator
 from sealdyn.simulation import stability
-
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 
 
 def tilts(at_speed, w):

@@ -1,15 +1,14 @@
 """Studies reckon with contact and secondary seals, or refuse them until they are asked to leave them out."""
 
-from pathlib import Path
-
 import pytest
+from command import SCENARIOS
 
 from sealdyn.scenario.reader import ScenarioError, parse_scenario
 from sealdyn.scenario.settings import without
 from sealdyn.scene.scene import SceneError
 from sealdyn.studies._runner import run_study
 
-TEXT = (Path(__file__).parents[2] / "scenarios" / "fms_reference.toml").read_text()
+TEXT = (SCENARIOS / "fms_reference.toml").read_text()
 CONTACT = '[contact]\nroughness = "0.1 um"\ncompressive_strength = "300 MPa"\n'
 SEAL = '[stator.secondary_seal]\nradius = "45 mm"\nline_friction = "20 N/m"\n'
 
