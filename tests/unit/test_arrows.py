@@ -89,9 +89,8 @@ def test_arrows_point_one_way():
 @pytest.mark.core
 def test_files_stand_in_no_circle():
     """No file imports itself by way of others, imports inside of functions counted."""
-    modules = {
-        ".".join(p.relative_to(PACKAGE.parent).with_suffix("").parts).removesuffix(".__init__"): p for p in FILES
-    }
+    named = (".".join(path.relative_to(PACKAGE.parent).with_suffix("").parts) for path in FILES)
+    modules = {name.removesuffix(".__init__"): path for name, path in zip(named, FILES, strict=True)}
     ahead = {}
     for name, path in modules.items():
         asked = {

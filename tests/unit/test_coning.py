@@ -7,6 +7,7 @@ import pytest
 from gas_faces import gas_film
 from scenes import CLEARANCE, R_I, R_O, SPEED, film, fmr, fms
 
+from sealdyn.dynamics.equilibrium import axial_shift
 from sealdyn.dynamics.intervals import split_at_breaks
 from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.step_bounds import LEAST_CONING
@@ -192,9 +193,8 @@ def test_segments_follow_the_law():
             found, rate = s[geometry.CONING_CHANGE], s[geometry.CONING_RATE]
             assert 3e-3 + found == pytest.approx(coning, rel=1e-12)
             least = min(least, found)
-            near = [
-                segment.gap_state(tau + step, np.zeros(segment.size))[geometry.CONING_CHANGE] for step in (-1e-6, 1e-6)
-            ]
+            rest = np.zeros(segment.size)
+            near = [segment.gap_state(tau + step, rest)[geometry.CONING_CHANGE] for step in (-1e-6, 1e-6)]
             assert np.diff(near)[0] / 2e-6 == pytest.approx(rate, rel=1e-6)
         # The watch between steps counts on the least of it.
         assert segment.swing[LEAST_CONING] <= least + 1e-15
@@ -232,7 +232,7 @@ def test_linear_theory_at_another_speed_has_the_coning_of_that_speed():
     found = slow.linear_scene(speed=1400.0)
     given = film(**law | {"coning": 3.125e-3 + 1.2e-9 * 1400.0**2, "coning_per_speed_squared": 0.0})
     fast = Model(fms(film=replace(given, clearance=slow.clearance), speed=1400.0))
-    shift = found_shift(slow, 1400.0)
+    shift = axial_shift(slow, slow.start, 1400.0)[0]
     expected = fast.linear_scene(shift=shift)
     assert found.film_k == pytest.approx(expected.film_k, rel=1e-7, abs=1e-6 * np.max(np.abs(expected.film_k)))
     assert found.film_d == pytest.approx(expected.film_d, rel=1e-7, abs=1e-9 * np.max(np.abs(expected.film_d)))
@@ -240,9 +240,3 @@ def test_linear_theory_at_another_speed_has_the_coning_of_that_speed():
     assert shift > 0.05 * slow.clearance
     excess = fast.interface.opening_force(slow.clearance + shift, P_I, P_O) - slow.closing_force()
     assert excess == pytest.approx(5e5 * shift, rel=1e-6)
-
-
-def found_shift(model, speed):
-    from sealdyn.dynamics.equilibrium import axial_shift
-
-    return axial_shift(model, model.start, speed)[0]

@@ -15,20 +15,17 @@ from sealdyn.scene.forces import Contact, contact_errors, contact_thresholds, fi
 
 R_I, R_O, C0, CONING, ROUGHNESS, STRENGTH, SPEED = 0.032, 0.040, 10e-6, 3.125e-3, 0.1e-6, 300e6, 1000.0
 C = 3 * ROUGHNESS
-CHRISTENSEN = Contact(
-    ROUGHNESS, compressive_strength=STRENGTH, stator_wear_coefficient=2e-16, rotor_wear_coefficient=3e-16
-)
+WEARS = {"stator_wear_coefficient": 2e-16, "rotor_wear_coefficient": 3e-16}
+CHRISTENSEN = Contact(ROUGHNESS, compressive_strength=STRENGTH, **WEARS)
 NUMBER, TIP, MODULUS = 1e11, 5e-6, 30e9
 GAUSSIAN = Contact(ROUGHNESS, law="greenwood-williamson", asperity_density=NUMBER, asperity_radius=TIP, modulus=MODULUS)
 WORN, PEAK = 1.5, 2e-8
 PLATEAUS = Contact(
-    ROUGHNESS, law="plateaus", truncation=WORN, plateau_roughness=PEAK, compressive_strength=STRENGTH,
-    stator_wear_coefficient=2e-16, rotor_wear_coefficient=3e-16,
+    ROUGHNESS, law="plateaus", truncation=WORN, plateau_roughness=PEAK, compressive_strength=STRENGTH, **WEARS
 )  # fmt: skip
 LAWS = pytest.mark.parametrize("law", [CHRISTENSEN, GAUSSIAN, PLATEAUS], ids=["christensen", "gaussian", "plateaus"])
-SLOTS = {
-    n: getattr(geometry, f"CONTACT_{n.upper()}") for n in ("force", "x", "y", "torque", "area", "pressure", "energy")
-}
+NAMES = "force", "x", "y", "torque", "area", "pressure", "energy"
+SLOTS = {name: getattr(geometry, f"CONTACT_{name.upper()}") for name in NAMES}
 SLOTS["wear"] = geometry.WEAR
 
 
@@ -70,7 +67,12 @@ def summed(pointwise, coning, dz, g_x, g_y, mean=False, angles=2048, radii=241):
     da = (R_O - R_I) * 30 * y**2 * (1 - y) ** 2 / (radii - 1) * 2 * np.pi / angles * r
     arm = 0.5 * (R_I + R_O) if mean else r
     h = C0 + dz + coning * (r - R_I) + arm * (g_x * np.sin(theta) - g_y * np.cos(theta))
-    slope = arm * (g_x * np.cos(theta) + g_y * np.sin(theta))
+    return sums(pointwise, theta, r, da, arm, h, (dz, g_x, g_y))
+
+
+def sums(pointwise, theta, r, da, arm, h, state):
+    """Every answer of `rub` of points of a face, of area `da` (m^2) each, with the film `h` (m)."""
+    slope = arm * (state[1] * np.cos(theta) + state[2] * np.sin(theta))
     area, p, energy = pointwise(h)
     return {
         "force": np.sum(p * da),
@@ -260,9 +262,8 @@ def test_closed_forms_against_the_density():
         low, high = min(max(-x, -1), 1), 1
 
         def mean(power, low=low, high=high, x=x):
-            return float(
-                mpmath.quad(lambda d: max(x + d, 0) ** power * 35 / mpmath.mpf(32) * (1 - d * d) ** 3, [low, high])
-            )
+            density = lambda d: 35 / mpmath.mpf(32) * (1 - d * d) ** 3  # noqa: E731
+            return float(mpmath.quad(lambda d: max(x + d, 0) ** power * density(d), [low, high]))
 
         assert roughness.contact_fraction(x) == pytest.approx(1 - mean(0), abs=1e-14)
         assert roughness.mean_film(x) == pytest.approx(mean(1), abs=1e-14)

@@ -70,15 +70,6 @@ def test_a_folder_offers_what_its_film_is():
             assert all(getattr(film_named(name), field) == value for field, value in offer._asdict().items())
 
 
-def test_films_import_no_other_film():
-    for name in all_film_names():
-        files = sorted((FOLDER / name).glob("*.py")) or [FOLDER / f"{name}.py"]
-        others = [f"films.{other}" for other in all_film_names() if other != name]
-        others += [f"from ..{other}" for other in all_film_names() if other != name]
-        for path in files:
-            assert not [other for other in others if other in path.read_text().split('"""', 2)[2]], path
-
-
 @pytest.mark.parametrize(
     "given, loaded",
     [("viscosity=0.01", {"linear", "radial"}), ("gas='air', temperature=300.0", {"gas_dam", "gas_reynolds", "linear"})],

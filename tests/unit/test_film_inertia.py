@@ -4,24 +4,11 @@ and floored pressures by other means, and where the rest of the program has to k
 from dataclasses import replace
 
 import pytest
+import test_film_radial
 from numpy.polynomial import Polynomial
 from oracles import floored_wrench, radial_wrench
 from scenes import CLEARANCE, R_I, R_O, SPEED, film, fms, started
-from test_film_radial import (
-    AREA,
-    CONVERGING,
-    DIVERGING,
-    FACES,
-    FLAT,
-    MU,
-    P_I,
-    P_O,
-    deviation,
-    face_of,
-    gap_state,
-    kernel,
-)
-from test_film_radial import random_state as random_state_of
+from test_film_radial import CONVERGING, DIVERGING, FACES, MU, P_I, P_O, deviation, face_of, gap_state, kernel
 
 from sealdyn.dynamics.model import Model
 from sealdyn.faces import geometry
@@ -60,9 +47,10 @@ def block(coning=CONVERGING, geometry="cylindrical", tilt_radius="local", error=
 
 
 def spun_state(face, share, seed, w_s, w_r, **more):
-    return random_state_of(face, share, seed, mean_spin=0.5 * (w_s + w_r), **more)
+    return test_film_radial.random_state(face, share, seed, mean_spin=0.5 * (w_s + w_r), **more)
 
 
+@pytest.mark.core
 @pytest.mark.parametrize(("w_s", "w_r"), SPINS)
 def test_the_push_is_that_of_the_radial_momentum_of_couette_flow(w_s, w_r):
     s = gap_state([0.0] * 6 + [0.5 * (w_s + w_r), MU, P_I, P_O], w_r - w_s)
@@ -101,7 +89,7 @@ def test_floored_pressures_against_a_dense_grid(coning, geometry, tilt_radius):
 
 def apart(found, expected):
     """Of force and moment, relative to the force (never below a bar on the face)."""
-    size = max(expected[0], 1e5 * AREA)
+    size = max(expected[0], 1e5 * test_film_radial.AREA)
     return max(abs(found[0] - expected[0]), abs(found[1] - expected[1]) / R_O) / size
 
 
@@ -113,10 +101,10 @@ def radial_floored(coning, geometry, tilt_radius, state):
 def test_a_line_thrown_dry_inside_the_face():
     """Faces at rest against each other's tilt, both edges above the floor: spin alone empties the inside, and what is
     left is a parabola in r^2 over 1/h^3, here by the dense grid too."""
-    face, (w_s, w_r) = face_of(FLAT), (0.0, 12.0 * SPEED)
+    face, (w_s, w_r) = face_of(test_film_radial.FLAT), (0.0, 12.0 * SPEED)
     state = [0.0] * 6 + [0.5 * (w_s + w_r), MU, 1e5, 1e5]
     s = gap_state(state, w_r - w_s)
-    floored.flow(block(FLAT, error=1e-9, cavitation_pressure=0.0), s)
+    floored.flow(block(test_film_radial.FLAT, error=1e-9, cavitation_pressure=0.0), s)
     expected, _ = floored_wrench(face, state, 0.0, 8, 200_001, push_of(w_s, w_r))
     assert s[geometry.FORCE] == pytest.approx(expected, rel=1e-8)
     assert 0.3 < s[geometry.CAVITATED] < 0.95
@@ -142,14 +130,6 @@ def test_a_cone_as_a_profile_is_the_same(coning, shape, tilt_radius):
 
 def heavy(**changes):
     return film("radial", density=1000.0, inertia=True, **changes)
-
-
-@pytest.mark.core
-def test_the_reference_seal_gains_86_kpa():
-    """One ring at rest: 3/20 rho w^2 (r_o^2 - r_i^2), 17 % of what is sealed."""
-    s = gap_state([0.0] * 6 + [0.5 * SPEED, MU, 0.0, 5e5])
-    g = centrifugal(radial.parameters(heavy(), CLEARANCE), s)
-    assert 0.5 * g * (R_O**2 - R_I**2) == pytest.approx(86.4e3, rel=1e-6)
 
 
 @pytest.mark.parametrize("changes", [{}, {"cavitation_pressure": 0.0}], ids=["full", "floored"])

@@ -154,23 +154,6 @@ def test_cross_stiffness_is_mean_spin_times_damping(coning, geometry):
 
 
 @pytest.mark.core
-def test_leakage_grows_with_the_square_of_the_tilt():
-    f = block(CONVERGING)
-    still = [0.0] * 6 + [0.5 * SPEED, MU, P_I, P_O]
-    tilts = 1e-6 * np.array([4.0, 8.0, 16.0, 32.0])
-    aligned = kernel(f, still)[2]
-    growth = [abs(kernel(f, [0.0, t, 0.0, *still[3:]])[2] / aligned - 1) for t in tilts]
-    assert np.polyfit(np.log(tilts), np.log(growth), 1)[0] == pytest.approx(2.0, abs=0.01)
-
-
-@pytest.mark.parametrize("geometry", ["cylindrical", "planar"])
-def test_flows_differ_by_the_volume_squeezed_out(geometry):
-    """In minus out = rate of the film's volume; a tilting film changes none (the wedge has no net volume)."""
-    state = random_state(face_of(CONVERGING, geometry), 0.4, 5)
-    _, _, inner, outer, _ = kernel(block(CONVERGING, geometry), state)
-    assert inner - outer == pytest.approx(state[3] * AREA, rel=1e-9)
-
-
 @pytest.mark.parametrize("coning", [CONVERGING, FLAT, DIVERGING])
 def test_power_put_in_is_the_heat_of_the_film(coning):
     """Torques times spins + pressures times flows - film wrench times relative rates = viscous dissipation,

@@ -6,6 +6,7 @@ from dataclasses import replace
 import h5py
 import numpy as np
 import pytest
+from gas_faces import gap_state
 from scenes import R_I, R_O, SUPPORT, film, fms, run
 from scipy.integrate import quad, solve_ivp
 from scipy.interpolate import PchipInterpolator
@@ -14,18 +15,9 @@ from sealdyn.analysis.film_matrices import State, matrices
 from sealdyn.dynamics.condensation import film_slopes
 from sealdyn.dynamics.model import Model
 from sealdyn.faces import geometry
-from sealdyn.faces.geometry import (
-    FLOW_INNER,
-    GAP_STATE_SIZE,
-    MEAN_SPIN,
-    MOMENT_X,
-    OUTER_PRESSURE,
-    SPIN_DIFFERENCE,
-    VISCOSITY,
-)
 from sealdyn.films.tabulated import FILM, parameters
 from sealdyn.scenario.reader import ScenarioError, parse_scenario, read_scenario
-from sealdyn.scene.scene import Initial, RingStart
+from sealdyn.scene.scene import Closing, Initial, RingStart
 from sealdyn.scene.tabulated import ELEMENTS, ORDER, Tabulated
 from sealdyn.studies._runner import run_study
 from sealdyn.studies.coefficients import columns_of, mapped
@@ -53,12 +45,8 @@ def table_of(tabulated, **changes):
     return replace(film("tabulated", **changes), tabulated=tabulated)
 
 
-def gap(**values):
-    s = np.zeros(GAP_STATE_SIZE)
-    s[[OUTER_PRESSURE, VISCOSITY, MEAN_SPIN, SPIN_DIFFERENCE]] = 5e5, 0.5e-3, 500.0, 1000.0
-    for slot, value in values.items():
-        s[getattr(geometry, slot)] = value
-    return s
+def gap(**slots):
+    return gap_state(film("tabulated"), 1000.0, **slots)
 
 
 @pytest.mark.core
@@ -107,7 +95,7 @@ def test_matrices_are_the_slopes_of_the_forces():
         assert one == pytest.approx(other, rel=1e-12)
     s = gap()
     FILM.wrench(f, s)
-    assert s[MOMENT_X] == pytest.approx(0.0, abs=1e-9)
+    assert s[geometry.MOMENT_X] == pytest.approx(0.0, abs=1e-9)
 
 
 SPEEDS, CLEARANCES = (0.0, 1000.0, 2000.0), (5e-6, 7e-6, 1e-5, 1.4e-5, 2e-5)
@@ -146,7 +134,7 @@ def test_what_the_radial_film_writes_comes_back(tmp_path):
     assert parse_scenario(by_csv.to_toml(), "seal.toml").scene == by_csv.scene
 
 
-def test_threshold_is_that_of_the_radial_film(tmp_path):
+def test_threshold_is_that_of_the_radial_film():
     scene = fms("radial", own=1e-6, runout=1e-6)
     held = columns_of(mapped(scene, 1e-10, SPEEDS, [0.0]))
     table = Tabulated(**{name: tuple(held[name]) for name in ("speed", *ELEMENTS)})
@@ -162,7 +150,7 @@ def test_leakage_goes_with_the_cube_of_the_film():
         s = gap(DZ=dz, OUTER_PRESSURE=max(drop, 0.0), INNER_PRESSURE=max(-drop, 0.0))
         FILM.flow(f, s)
         # Inwards, where the pressure is higher outside.
-        assert s[FLOW_INNER] == pytest.approx(-2e-9 * (1.0 + dz / 1e-5) ** 3 * drop / 5e5, rel=1e-12)
+        assert s[geometry.FLOW_INNER] == pytest.approx(-2e-9 * (1.0 + dz / 1e-5) ** 3 * drop / 5e5, rel=1e-12)
 
 
 def test_leakage_of_a_table_passes_through_its_rows():
@@ -173,7 +161,7 @@ def test_leakage_of_a_table_passes_through_its_rows():
     for h, p, flow in [*rows, (1e-5, 5e4, rows[3][2] / 2), (4e-5, 1e5, rows[6][2] * 8)]:
         s = gap(DZ=h - 1e-5, OUTER_PRESSURE=p)
         FILM.flow(f, s)
-        assert -s[FLOW_INNER] == pytest.approx(flow, rel=1e-9)
+        assert -s[geometry.FLOW_INNER] == pytest.approx(flow, rel=1e-9)
 
 
 def test_a_run_that_leaves_the_table_ends():
@@ -226,9 +214,8 @@ TWO = "k_axial_axial = [1e7, 2e7]\nd_axial_axial = 1e3\nk_tilt_x_tilt_x = 5e3\nk
     ],
 )
 def test_what_a_table_cannot_be(table, key):
-    text = SEAL.replace("[rotor]", f"[film.tabulated]\n{table}\n[rotor]").replace(
-        "[film]", '[film]\nmodel = "tabulated"'
-    )
+    text = SEAL.replace("[film]", '[film]\nmodel = "tabulated"')
+    text = text.replace("[rotor]", f"[film.tabulated]\n{table}\n[rotor]")
     with pytest.raises(ScenarioError) as error:
         parse_scenario(text, "seal.toml")
     assert error.value.key == (f"film.{key}" if key != "speed" else "shaft.speed")
@@ -240,25 +227,9 @@ def test_one_of_several_frequencies_is_taken():
 
 
 def test_the_closing_force_finds_the_clearance():
-    scenario = parse_scenario(
-        SEAL.replace('clearance = "10 um"', 'model = "tabulated"').replace("[rotor]", '''[film.tabulated]
-clearance = ["6 um", "10 um", "20 um"]
-k_axial_axial = ["80 N/um", "20 N/um", "4 N/um"]
-d_axial_axial = 1e3
-k_tilt_x_tilt_x = 5e3
-k_tilt_y_tilt_y = 5e3
-d_tilt_x_tilt_x = 3
-d_tilt_y_tilt_y = 3
-opening_force = "700 N"
-opening_clearance = "10 um"
-[closing]
-balance_ratio = 0.8
-spring_force = "10 N"
-[rotor]'''),
-        "seal.toml",
-    )  # fmt: skip
-    model = Model(scenario.scene)
-    area = math.pi * (R_O**2 - R_I**2)
+    table = table_of(scaled(opening_force=700.0, opening_clearance=1e-5), clearance=None)
+    model, area = Model(fms(film=table, closing=Closing(0.8, 10.0))), math.pi * (R_O**2 - R_I**2)
+    assert 6e-6 < model.clearance < 1e-5
     assert model.interface.opening_force(model.clearance, 0.0, 5e5) == pytest.approx(0.8 * 5e5 * area + 10.0, rel=1e-9)
 
 

@@ -9,7 +9,7 @@ from sealdyn.films import _gas_dam as gas
 
 SEAL = zuk.CRUISE
 R_I, R_O, P_0, P_3 = SEAL.inner_radius, SEAL.outer_radius, SEAL.high_pressure, SEAL.low_pressure
-WIDTH, MEAN = R_O - R_I, (R_I + R_O) / 2
+WIDTH = R_O - R_I
 MIL = zuk.MIL
 FRICTION = {"laminar": lambda re: 24 / re, "turbulent": lambda re: 0.079 / re**0.25}
 FRICTION["blend"] = lambda re: (FRICTION["laminar"](re) ** 8 + FRICTION["turbulent"](re) ** 8) ** 0.125
@@ -50,19 +50,8 @@ def against_march(films, pressures, friction="laminar", width="constant", radii=
     code, found = solved(f, films[order], pressures[order])
     if inwards:
         found[[gas.MOMENT, gas.MASS_FLOW]] *= -1.0
-    dam = Dam(
-        radii,
-        films,
-        pressures,
-        SEAL.temperature,
-        SEAL.gas_constant,
-        SEAL.heat_ratio,
-        sutherland,
-        FRICTION[friction],
-        width != "constant",
-        width == "radial",
-        loss,
-    )
+    laws = sutherland, FRICTION[friction], width != "constant", width == "radial", loss
+    dam = Dam(radii, films, pressures, SEAL.temperature, SEAL.gas_constant, SEAL.heat_ratio, *laws)
     truth = flow(dam)
     assert (code == gas.SOLVED) == (truth is not None), (code, truth, films, pressures)
     if truth is None:

@@ -61,9 +61,8 @@ def marched_sum(table, tilt, angles):
         found = flow(dam)
         arm = mean + (found.centre - 0.5) * width
         force = found.force * mean
-        total += np.array(
-            [force, arm * force * math.sin(theta), -arm * force * math.cos(theta), found.mass_flow * mean]
-        )
+        moments = arm * force * math.sin(theta), -arm * force * math.cos(theta)
+        total += np.array([force, *moments, found.mass_flow * mean])
     return total * 2 * math.pi / angles
 
 
@@ -114,9 +113,8 @@ def test_pressure_field_sums_up_to_the_force():
     field = np.empty((1, 1000, len(theta)))
     gas_dam.fields(f, s, field)
     gauge = np.trapezoid((field[0] - LOW) * r[:, None], r, axis=0)
-    assert 2 * math.pi * gauge.mean() == pytest.approx(
-        s[geometry.FORCE] - LOW * math.pi * (R_O - R_I) * (R_O + R_I), rel=2e-5
-    )
+    low = LOW * math.pi * (R_O - R_I) * (R_O + R_I)
+    assert 2 * math.pi * gauge.mean() == pytest.approx(s[geometry.FORCE] - low, rel=2e-5)
     # From the reservoir, less what speeds the gas up, down to the low pressure or the choked one.
     assert np.all(np.diff(field[0], axis=0) < 0) and np.all(field[0, 0] <= HIGH) and np.all(field[0, -1] >= LOW * 0.999)
 
@@ -143,10 +141,8 @@ def seal(table, **stator):
 @pytest.mark.parametrize("method", ["adams", "bdf", "ida", "dop853", "radau"])
 def test_a_run_that_leaves_what_the_film_has_solutions_for_ends_in_words(method):
     """Pressure that rises on a dam that opens outwards, held open, until its entrance chokes."""
-    rising, held = (
-        PiecewiseLinear((0.0, 0.02), (2e5, 8e6)),
-        Support(axial_stiffness=1e10, axial_damping=1e4, radius=0.085),
-    )
+    rising = PiecewiseLinear((0.0, 0.02), (2e5, 8e6))
+    held = Support(axial_stiffness=1e10, axial_damping=1e4, radius=0.085)
     table = film(inner_pressure=rising, coning=2.2e-2, clearance=9e-6)
     found = run(seal(table, support=held), 2.0, method=method)
     assert found.outcome.status == Status.FAILED and found.outcome.tau < 0.008

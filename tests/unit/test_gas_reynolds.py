@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from collocated_gas import collocated
 from gas_faces import MU, PARTS, TEMPERATURE, gap_state, gas_film, linear_film, steady
+from scenes import fms
 from scipy.integrate import quad
 from scipy.special import iv, kv
 
@@ -13,11 +14,10 @@ from sealdyn.dynamics.condensation import FilmDerivatives
 from sealdyn.faces import film_thickness, geometry
 from sealdyn.films import film_of
 from sealdyn.films.gas_reynolds import film as gas
-from sealdyn.scene.excitation import Shaft
 from sealdyn.scene.film import Profile
 from sealdyn.scene.patterns import Waviness
-from sealdyn.scene.rings import Rotor, Stator, Support
-from sealdyn.scene.scene import Scene, SceneError
+from sealdyn.scene.rings import Rotor
+from sealdyn.scene.scene import SceneError
 
 R_I, R_O, CLEARANCE = 0.032, 0.040, 5e-6
 NORMAL = 273.15 / (TEMPERATURE * 101325.0)
@@ -74,9 +74,8 @@ def test_cones_have_the_steady_film_of_a_quadrature(coning):
     film = gas_film(inner_pressure=p_i, outer_pressure=p_o, coning=coning)
     f, s = gas.parameters(film, CLEARANCE), gap_state(film, 1000.0)
     steady(f, s)
-    assert s[geometry.FLOW_INNER] == pytest.approx(
-        -2 * np.pi * NORMAL * (p_o**2 - p_i**2) / (24 * MU * whole), rel=3e-3
-    )
+    flow = -2 * np.pi * NORMAL * (p_o**2 - p_i**2) / (24 * MU * whole)
+    assert s[geometry.FLOW_INNER] == pytest.approx(flow, rel=3e-3)
     assert s[geometry.FLOW_OUTER] == pytest.approx(s[geometry.FLOW_INNER], rel=1e-10)
     assert s[geometry.FORCE] == pytest.approx(force, rel=5e-4)
     assert gas.opening_law(film)(CLEARANCE, p_i, p_o) == pytest.approx(s[geometry.FORCE], rel=1e-12)
@@ -270,34 +269,9 @@ def test_a_profile_is_the_cone_it_draws():
     assert found[1] == pytest.approx(found[0], rel=1e-12)
 
 
-def test_smooth_steps_around_the_circle_lift_at_second_order():
-    """Six pads 4 um deep over half of their pitch, as a series of waves."""
-    turn = np.arange(4000) / 4000
-    step = 0.5 * (np.tanh((turn - 0.25) / 0.08) - np.tanh((turn - 0.75) / 0.08))
-    parts = 4e-6 * np.fft.rfft(step) / len(turn)
-    waves = [Waviness(6 * n, 2 * abs(parts[n]), float(np.angle(parts[n]))) for n in range(1, 9)]
-    lifts = []
-    for angles in (96, 192, 384, 768):
-        film = gas_film((8, angles), inner_pressure=1e5, clearance=3e-6)
-        f, s = gas.parameters(film, 3e-6), gap_state(film, 1000.0, dz=parts[0].real)
-        film_thickness.lay_waves(f, waves, [])
-        steady(f, s)
-        lifts.append(s[geometry.FORCE] - 1e5 * np.pi * (R_O**2 - R_I**2))
-    # Measured 29.0, 29.3, 29.4, 29.4 N with 12 cells: orders of 2.0 and 2.0.
-    assert np.all(np.abs(orders(np.diff(lifts)) - 2.0) < 0.3), lifts
-    assert abs(lifts[1] / lifts[-1] - 1) < 0.01
-
-
 def test_gases_between_cylindrical_faces_only():
-    def scene(film, **face):
-        ring = dict(mass=1.0, transverse_inertia=8e-4, polar_inertia=1.6e-3)
-        support = Support(axial_stiffness=5e5, axial_damping=300.0, radius=0.04)
-        return Scene(shaft=Shaft(speed=1000.0), film=film, stator=Stator(**ring, support=support), rotor=Rotor(**face))
-
-    assert film_of(scene(gas_film())) is gas.FILM
-    with pytest.raises(SceneError):
-        film_of(scene(gas_film(geometry="planar")))
-    with pytest.raises(SceneError):
-        film_of(scene(gas_film(gas=None, temperature=None)))
-    with pytest.raises(SceneError):
-        film_of(scene(gas_film(), waviness=WAVES))
+    assert film_of(fms(film=gas_film())) is gas.FILM
+    turning = fms(film=gas_film(), rotor=Rotor(waviness=WAVES))
+    for scene in (fms(film=gas_film(geometry="planar")), fms(film=gas_film(gas=None, temperature=None)), turning):
+        with pytest.raises(SceneError):
+            film_of(scene)

@@ -151,9 +151,8 @@ def test_the_studies_of_a_dry_gas_seal(scenario, tmp_path):
     # From the high to the low pressure, at normal conditions.
     leakage = -ROW["outflow"] * 273.15 / 300.0 / 101325.0
     assert root["leakage"] == pytest.approx(leakage, rel=2e-3)
-    over = run_study(
-        "load-support", scenario, tmp_path / "l.h5", flags={"vary": "rotor.grooves.0.depth=6 um"}, workers=1
-    )
+    flags = {"vary": "rotor.grooves.0.depth=6 um"}
+    over = run_study("load-support", scenario, tmp_path / "l.h5", flags=flags, workers=1)
     (row,) = over["rows"]
     assert row["stiffness_over_leakage"] == pytest.approx(root["stiffness"] / leakage, rel=4e-3)
     assert row["stiffness"] == pytest.approx(root["stiffness"], rel=1e-9)

@@ -17,7 +17,6 @@ from sealdyn.faces import geometry
 from sealdyn.films import film_of
 from sealdyn.films.gas_reynolds import film as gas
 from sealdyn.scene.film import Pads, depth_of, pads_errors
-from sealdyn.scene.rings import Stator
 from sealdyn.scene.scene import SceneError
 from sealdyn.studies._runner import run_study
 
@@ -105,7 +104,6 @@ def test_which_films_and_faces_take_them():
             film_of(scene(film))
     with pytest.raises(SceneError, match="stands still"):
         film_of(scene(padded(CLOSED), speed=5.0))
-    assert isinstance(Stator(), Stator)
 
 
 @pytest.mark.parametrize(

@@ -33,13 +33,6 @@ def test_the_edges_of_a_spiral_are_where_its_depth_jumps():
     assert SPIRAL.depth_at(0.0555, SPIRAL.phase) > 0.0
 
 
-def test_a_radius_grows_with_the_angle_where_it_is_positive():
-    low, high = 0.0556, 0.0615
-    ahead = math.log(high / low) / math.tan(SPIRAL.angle)
-    start = SPIRAL.phase + math.log(low / 0.0555) / math.tan(SPIRAL.angle)
-    assert ahead > 0.0 and SPIRAL.depth_at(low, start) > 0.0 and SPIRAL.depth_at(high, start + ahead) > 0.0
-
-
 def test_a_tee_is_arms_and_stem_not_deeper_where_they_overlap():
     overlapping = Boxes(12, 6e-6, (*TEE.boxes[:1], Box(0.057, 0.0616, 0.2)), phase=0.1)
     assert np.array_equal(overlapping.depth_at(RADII, ROUND), TEE.depth_at(RADII, ROUND))

@@ -5,23 +5,15 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from oracles import christensen
 from scipy.integrate import quad
 from scipy.optimize import brentq
+from test_contact import C0, GAUSSIAN, R_I, R_O, SLOTS, SPEED, C, pressed, sums
+from test_contact import CHRISTENSEN as LAW
 
 from sealdyn.faces import contact, geometry
 from sealdyn.faces.film_thickness import h_min
 from sealdyn.scene.film import Film, Profile
-from sealdyn.scene.forces import Contact
 
-R_I, R_O, C0, ROUGHNESS, STRENGTH, SPEED = 0.032, 0.040, 10e-6, 0.1e-6, 300e6, 1000.0
-C = 3 * ROUGHNESS
-LAW = Contact(ROUGHNESS, compressive_strength=STRENGTH, stator_wear_coefficient=2e-16, rotor_wear_coefficient=3e-16)
-GAUSSIAN = Contact(ROUGHNESS, law="greenwood-williamson", asperity_density=1e11, asperity_radius=5e-6, modulus=30e9)
-SLOTS = {
-    n: getattr(geometry, f"CONTACT_{n.upper()}") for n in ("force", "x", "y", "torque", "area", "pressure", "energy")
-}
-SLOTS["wear"] = geometry.WEAR
 # Thinnest in the middle, at an edge, and with a groove.
 BENT = {
     "middle": ((0.032, 0.0335, 0.0371, 0.040), (4e-6, 0.3e-6, 0.0, 6e-6)),
@@ -89,22 +81,9 @@ def summed(shape, at, mean=False, coning=0.0):
     """Every answer of `rub`, and the wear integrals, by sums over the grid."""
     theta, r, da = grid(shape)
     h = thickness(shape, r, theta, at, mean, coning)
-    arm = 0.5 * (R_I + R_O) if mean else r
-    share, energy = christensen(h, C, STRENGTH)
-    p, slope = STRENGTH * share, arm * (at[1] * np.cos(theta) + at[2] * np.sin(theta))
-    load_arm, face_area = np.sum(p * r * da), np.pi * (R_O**2 - R_I**2)
+    found = sums(pressed, theta, r, da, 0.5 * (R_I + R_O) if mean else r, h, at)
     hats = [np.interp(r, shape[0], row) for row in np.eye(len(shape[0]))]
-    return {
-        "force": np.sum(p * da),
-        "x": np.sum(p * arm * np.sin(theta) * da),
-        "y": -np.sum(p * arm * np.cos(theta) * da),
-        "torque": 0.1 * load_arm - 0.5 * np.sum(p * slope * da),
-        "area": np.sum(share * da) / face_area,
-        "pressure": p.max(),
-        "energy": np.sum(energy * da),
-        "wear": 5e-16 * SPEED * load_arm / face_area,
-        "nodes": np.array([np.sum(p * r * hat * da) for hat in hats]),
-    }
+    return found | {"nodes": np.array([np.sum(pressed(h)[1] * r * hat * da) for hat in hats])}
 
 
 def states(shape, seed, number, mean=False, coning=0.0, deepest=-1.5):
@@ -189,13 +168,13 @@ def test_aligned_faces_against_quadrature(shape):
                 if above(a) * above(b) < 0:
                     corners.append(brentq(above, a, b, xtol=1e-17))
 
-        def pressed(x, weight, at=at):
-            return STRENGTH * christensen(thickness(shape, x, 0.0, at), C, STRENGTH)[0] * weight(x) * 2 * np.pi * x
+        def around(x, weight, at=at):
+            return pressed(thickness(shape, x, 0.0, at))[1] * weight(x) * 2 * np.pi * x
 
         ends = [R_I, *sorted(corners), R_O]
 
-        def integral(weight, ends=ends, pressed=pressed):
-            return sum(quad(pressed, a, b, (weight,), epsabs=0, epsrel=1e-13)[0] for a, b in pairwise(ends))
+        def integral(weight, ends=ends, around=around):
+            return sum(quad(around, a, b, (weight,), epsabs=0, epsrel=1e-13)[0] for a, b in pairwise(ends))
 
         assert rub(f, at)["force"] == pytest.approx(integral(lambda x: 1.0), rel=1e-11)
         for found, row in zip(wear_integrals(f, at), np.eye(len(r)), strict=True):
@@ -236,10 +215,8 @@ def test_hat_areas(shape):
     """They sum to the face, and weigh a depth to its volume."""
     areas = contact.hat_areas(face(shape))
     assert np.sum(areas) == pytest.approx(np.pi * (R_O**2 - R_I**2), rel=1e-14)
-    volume = sum(
-        quad(lambda x: depth_at(shape, x) * 2 * np.pi * x, a, b, epsrel=1e-13, epsabs=0)[0]
-        for a, b in pairwise(shape[0])
-    )
+    depth = lambda x: depth_at(shape, x) * 2 * np.pi * x  # noqa: E731
+    volume = sum(quad(depth, *ends, epsrel=1e-13, epsabs=0)[0] for ends in pairwise(shape[0]))
     assert np.sum(areas * shape[1]) == pytest.approx(volume, rel=1e-12)
 
 

@@ -115,12 +115,6 @@ def test_scenes_built_in_python_are_refused_too():
             started(fmr(film=bad), 0.01, 1e-6)
 
 
-def test_profiled_without_a_profile_is_the_radial_film():
-    fine, other = (started(fmr(model), 0.01, 1e-9) for model in ("radial", "profiled"))
-    for one, two in zip(fine.model.film_matrices(), other.model.film_matrices(), strict=True):
-        assert two == pytest.approx(one, rel=1e-8, abs=1e-8 * np.max(np.abs(one)))
-
-
 def test_the_aligned_faces_rest_on_their_asperities_where_they_are_highest():
     """Closed by more than the film carries, the faces of a bent profile meet at its highest radius."""
     rough = Contact(roughness=0.1e-6, compressive_strength=300e6)

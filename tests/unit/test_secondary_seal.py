@@ -25,9 +25,8 @@ def circle(v, q_x, q_y, points=100_001):
     theta = (np.arange(points) + 0.5) * 2 * np.pi / points
     line = -LINE * np.sign(v + RADIUS * (q_x * np.sin(theta) - q_y * np.cos(theta)))
     d = RADIUS * 2 * np.pi / points
-    return np.array(
-        [line.sum() * d, (line * RADIUS * np.sin(theta)).sum() * d, -(line * RADIUS * np.cos(theta)).sum() * d]
-    )
+    lever = line * RADIUS * d
+    return np.array([line.sum() * d, (lever * np.sin(theta)).sum(), -(lever * np.cos(theta)).sum()])
 
 
 @settings(deadline=None, max_examples=40)
