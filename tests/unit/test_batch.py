@@ -14,9 +14,8 @@ from sealdyn.scene.rings import SecondarySeal
 
 def sealed():
     scene = fms()
-    support = replace(scene.stator.support) if scene.stator.support else None
-    return replace(scene, stator=replace(scene.stator, support=support,
-                                         secondary_seal=SecondarySeal(radius=0.03, line_friction=50.0)))  # fmt: skip
+    held = replace(scene.stator, secondary_seal=SecondarySeal(radius=0.03, line_friction=50.0))
+    return replace(scene, stator=held)
 
 
 SCENES = {

@@ -49,9 +49,8 @@ def test_balance_ratio_and_spring_give_a_clearance_that_balances(geometry, balan
     root = ready.model.interface.equilibria[0]
     assert len(ready.model.interface.equilibria) == 1 and root.stable
     step = 1e-4 * ready.model.clearance
-    slope = opening(ready.model.clearance - step, geometry=geometry) - opening(
-        ready.model.clearance + step, geometry=geometry
-    )
+    thinner, thicker = (opening(ready.model.clearance + side * step, geometry=geometry) for side in (-1, 1))
+    slope = thinner - thicker
     assert root.stiffness == pytest.approx(slope / (2 * step), rel=1e-6)
     # The aligned scene stands still there.
     y, yp = np.zeros(ready.model.unknowns.size), np.empty(ready.model.unknowns.size)
@@ -62,9 +61,8 @@ def test_balance_ratio_and_spring_give_a_clearance_that_balances(geometry, balan
 def test_two_give_the_third_around_the_circle():
     first = started(scene(Closing(0.72, 40.0), clearance=None), 1e-3)
     spring = started(scene(Closing(balance_ratio=0.72), clearance=first.model.clearance), 1e-3).model.closing.spring
-    balance = started(
-        scene(Closing(spring_force=40.0), clearance=first.model.clearance), 1e-3
-    ).model.closing.balance_ratio
+    held = started(scene(Closing(spring_force=40.0), clearance=first.model.clearance), 1e-3)
+    balance = held.model.closing.balance_ratio
     assert spring == pytest.approx(40.0, rel=1e-9)
     assert balance == pytest.approx(0.72, rel=1e-12)
 
@@ -118,15 +116,13 @@ def test_inside_pressurised_seal_is_the_outside_pressurised_one_mirrored():
     )  # fmt: skip
     assert not inside.model.closing.outer_is_high and outside.model.closing.outer_is_high
     assert inside.model.clearance == pytest.approx(outside.model.clearance + coning * width, rel=1e-9)
-    assert inside.model.interface.equilibria[0].stiffness == pytest.approx(
-        outside.model.interface.equilibria[0].stiffness, rel=1e-7
-    )
+    stiffness = [ready.model.interface.equilibria[0].stiffness for ready in (inside, outside)]
+    assert stiffness[0] == pytest.approx(stiffness[1], rel=1e-7)
 
 
 def test_inside_pressurised_cylindrical_film_balances():
-    ready = started(
-        scene(Closing(0.72, 40.0), clearance=None, coning=-3.125e-3, outer_pressure=P_I, inner_pressure=P_O), 1e-3
-    )
+    turned = dict(clearance=None, coning=-3.125e-3, outer_pressure=P_I, inner_pressure=P_O)
+    ready = started(scene(Closing(0.72, 40.0), **turned), 1e-3)
     force = closing_force(0.72, 40.0, P_O, P_I)
     assert opening(ready.model.clearance, -3.125e-3, P_O, P_I) == pytest.approx(force, rel=1e-10)
     assert ready.model.interface.equilibria[-1].stable
@@ -215,9 +211,8 @@ def test_rough_faces_pressed_into_each_other_balance_where_the_run_starts(spring
 
 def test_what_a_scene_drives_to_is_closed_as_its_run_is():
     """A pressure that falls takes its share of the closing force with it; it does not decide the balance anew."""
-    falling = scene(
-        Closing(None, 40.0), clearance=CLEARANCE, outer_pressure=PiecewiseLinear((0.0, 1.0), (P_O, P_O / 3))
-    )
+    falls = PiecewiseLinear((0.0, 1.0), (P_O, P_O / 3))
+    falling = scene(Closing(None, 40.0), clearance=CLEARANCE, outer_pressure=falls)
     whole, end = started(falling, 2.0), started(frozen_at_end(falling), 2.0)
     last = whole.model.closing.over(whole.intervals[-1], falling.film)[0]
     assert end.model.closing_force() == pytest.approx(last, rel=1e-12)

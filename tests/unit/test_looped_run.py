@@ -41,6 +41,13 @@ SCENES = {
 }
 
 
+def scenarios_of(name):
+    file, overrides, varied = SCENES[name]
+    ((key, values),) = varied.items()
+    base = read_scenario(SCENARIOS / f"{file}.toml", overrides)
+    return [with_values(base, {key: value}) for value in values]
+
+
 def alone(scenario):
     """The run by itself, at the tolerance of the loop: run, tally, outcome."""
     run, plan = prepare_run(scenario)
@@ -53,10 +60,7 @@ def alone(scenario):
 
 @pytest.mark.parametrize("name", SCENES)
 def test_a_run_of_the_loop_is_the_run_by_itself(name):
-    file, overrides, varied = SCENES[name]
-    ((key, values),) = varied.items()
-    base = read_scenario(SCENARIOS / f"{file}.toml", overrides)
-    scenarios = [with_values(base, {key: value}) for value in values]
+    scenarios = scenarios_of(name)
     looped = [LoopedRun(scenario, ["leakage.mean", "h_min.value"]) for scenario in scenarios]
     assert len({run.structure for run in looped}) == 1 and looped[0].structure
     integrate(looped)
@@ -114,9 +118,8 @@ def test_rows_are_single_runs_within_the_accuracy(by_itself, accuracy):
     found = rows("fms_reference", "rotor.runout", runout, outputs, *overrides)
     assert by_itself == []
     for row, value in zip(found, runout, strict=True):
-        single = simulate_in_memory(
-            read_scenario(SCENARIOS / "fms_reference.toml", [*overrides, f'rotor.runout="{value}"'])
-        )
+        changes = [*overrides, f'rotor.runout="{value}"']
+        single = simulate_in_memory(read_scenario(SCENARIOS / "fms_reference.toml", changes))
         assert row["status"] == "ok" and "message" not in row
         assert abs(row["h_min.value"] - single["h_min"]["value"]) < accuracy * 1e-5
         assert abs(row["relative_misalignment.max"] - single["relative_misalignment"]["max"]) < accuracy * 1e-5 / 0.04
@@ -139,10 +142,7 @@ def test_means_are_taken_only_where_they_are_asked_for():
 
 @pytest.mark.parametrize("name", SCENES)
 def test_end_states_alone_are_those_of_a_watched_run(name):
-    file, overrides, varied = SCENES[name]
-    ((key, values),) = varied.items()
-    base = read_scenario(SCENARIOS / f"{file}.toml", overrides)
-    scenarios = [with_values(base, {key: value}) for value in values]
+    scenarios = scenarios_of(name)
     lean, watched = ([LoopedRun(s, outputs) for s in scenarios] for outputs in (["end.time"], ["h_min.value"]))
     assert lean[0].structure != watched[0].structure
     integrate(lean)

@@ -2,12 +2,9 @@
 
 import numpy as np
 import pytest
-from scipy.integrate import odeint
 from scipy.linalg import expm
 
 from sealdyn.numerics.time_series import horizon, tangent_product, two_trajectories, uncertainty
-
-LORENZ_TIME = 0.5
 
 
 def logistic(x):
@@ -24,24 +21,6 @@ def henon(x):
 
 def henon_tangent(x, q):
     return henon(x), np.array([[-2.8 * x[0], 1.0], [0.3, 0.0]]) @ q
-
-
-def lorenz_rate(t, x):
-    return [10.0 * (x[1] - x[0]), x[0] * (28.0 - x[2]) - x[1], x[0] * x[1] - 8.0 / 3.0 * x[2]]
-
-
-def lorenz(x):
-    return odeint(lorenz_rate, x, (0.0, LORENZ_TIME), rtol=1e-9, atol=1e-9, tfirst=True)[-1]
-
-
-def lorenz_tangent(x, q):
-    def rate(t, y):
-        a = np.array([[-10.0, 10.0, 0.0], [28.0 - y[2], -1.0, -y[0]], [y[1], y[0], -8.0 / 3.0]])
-        return np.concatenate([lorenz_rate(t, y), (a @ y[3:].reshape(3, -1)).ravel()])
-
-    start = np.concatenate([x, q.ravel()])
-    y = odeint(rate, start, (0.0, LORENZ_TIME), rtol=1e-8, atol=1e-8, tfirst=True)[-1]
-    return y[:3], y[3:].reshape(3, -1)
 
 
 @pytest.mark.core
@@ -76,19 +55,6 @@ def test_damped_ring_has_its_least_damped_eigenvalue():
     assert one.value == pytest.approx(expected, rel=2e-3)
     assert two.value == pytest.approx(expected, rel=2e-3)
     assert two.spectrum.sum() == pytest.approx(np.trace(a) * time, rel=1e-10)
-
-
-@pytest.mark.slow
-def test_lorenz_flow():
-    """0.9056 per unit of time (Sprott 2003), and the sum of the three is the divergence -41/3."""
-    one = two_trajectories(lorenz, [1.0, 2.0, 20.0], [10.0, 10.0, 10.0], 800, settle=40)
-    two = tangent_product(lorenz_tangent, [1.0, 2.0, 20.0], 800, directions=3, settle=40)
-    for exponent in (one, two):
-        value, error = exponent.value / LORENZ_TIME, exponent.uncertainty / LORENZ_TIME
-        assert value == pytest.approx(0.9056, abs=1.5 * error)
-        assert error < 0.08
-    assert two.spectrum.sum() / LORENZ_TIME == pytest.approx(-41.0 / 3.0, rel=1e-4)
-    assert two.spectrum[1] / LORENZ_TIME == pytest.approx(0.0, abs=0.02)
 
 
 @pytest.mark.parametrize("correlation", [0.0, 0.9])

@@ -4,13 +4,10 @@ import math
 
 import numpy as np
 import pytest
-from command import SCENARIOS
 
 from sealdyn.numerics.twice_integrated import twice_integrated
-from sealdyn.scenario.reader import ScenarioError, parse_scenario
 from sealdyn.scene.excitation import Motion
 
-FMR = (SCENARIOS / "fmr_reference.toml").read_text()
 CORNER, AMPLITUDE = 5.0, 1e-6
 
 
@@ -63,22 +60,3 @@ def test_a_motion_has_the_columns_of_its_accelerations():
     assert tilt == motion.tilt_x and not any(none)
     assert motion.moves("axial") and not motion.moves("tilt_y")
     assert len(motion.remarks("housing.motion")) == 1
-
-
-GIVEN = "time = [0, 0.1, 0.2, 0.3, 0.4, 0.5]\naxial_acceleration = [0, 1, 0, 1, 0, 1]"
-
-
-@pytest.mark.parametrize(
-    ("table", "key"),
-    [
-        (GIVEN, "drift_below"),
-        (f"{GIVEN}\ndrift_below = 1", "drift_below"),
-        (f"{GIVEN}\ndrift_below = 4\naxial = [0, 1e-6, 0, 0, 0, 0]", "axial_acceleration"),
-        ("time = [0, 1, 2, 3, 4, 5]\naxial = [0, 0, 0, 0, 0, 1e-6]\ndrift_below = 1", "drift_below"),
-        (f"{GIVEN}\ndrift_below = 4".replace("[0, 1, 0, 1, 0, 1]", "[0, 1]"), "axial_acceleration"),
-    ],
-)
-def test_what_accelerations_cannot_be(table, key):
-    with pytest.raises(ScenarioError) as error:
-        parse_scenario(f"{FMR}\n[housing.motion]\n{table}\n", "seal.toml")
-    assert error.value.key == f"housing.motion.{key}"

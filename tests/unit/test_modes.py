@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from scenes import GIVEN, INERTIA, NOTHING, SPEED, SUPPORT, film, fms, ring
+from scenes import GIVEN, INERTIA, SPEED, SUPPORT, film, fms, free_ring, ring, started
 from scenes import of_given_film as run_of
 
 from sealdyn.dynamics.model import Model
@@ -17,12 +17,6 @@ from sealdyn.scene.rings import Rotor, Stator
 K_F, D_F, K_FZ, D_FZ = GIVEN
 K_S, D_S = SUPPORT.tilt()
 SLENDER = INERTIA / 3
-
-
-def free_ring():
-    """A rotor on undamped springs in a film that does nothing."""
-    undamped = replace(SUPPORT, axial_damping=0.0)
-    return run_of(rotor=Rotor(**ring(3.0, support=undamped)), film_table=film("linear", coefficients=NOTHING))
 
 
 FMS, FMR = dict(stator=Stator(**ring(3.0))), dict(rotor=Rotor(**ring(3.0)))
@@ -158,10 +152,7 @@ def test_a_short_disk_has_no_critical_speed():
 
 
 def test_an_undamped_ring_is_neutral_at_every_speed():
-    free = run_of(
-        rotor=Rotor(**ring(support=replace(SUPPORT, axial_damping=0.0))),
-        film_table=film("linear", coefficients=NOTHING),
-    )
+    free = started(free_ring(), 1.0)
     for speed in (10.0, 1000.0, 1e5):
         assert verdict(free.model.linear_scene(speed=speed).modes()) == "neutral"
     assert thresholds(one_by_one(lambda w: free.model.linear_scene(speed=w)), 10.0, 1e5) == []
@@ -181,7 +172,7 @@ def test_an_aligned_scene_above_its_threshold_is_unstable():
 
 def test_resonance_is_where_a_forward_mode_turns_with_the_shaft():
     """Undamped slender ring: -I w^2 + J w^2 + K = 0."""
-    free = free_ring()
+    free = started(free_ring(3.0), 1.0)
     found = resonance_speeds(one_by_one(lambda w: free.model.linear_scene(speed=w)), 10.0, 1e5)
     assert found == pytest.approx([math.sqrt(K_S / (INERTIA - SLENDER))], rel=1e-9)
 

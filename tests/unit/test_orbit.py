@@ -55,10 +55,8 @@ def test_orbit_agrees_with_a_long_transient(name):
     recorder = Recorder(orbit.period)
     solve(ready, choose_method(ready)[0], accuracy, recorder)
     _, q, _ = recorder.arrays()
-    assert (
-        np.max(np.abs(q[-1] - orbit.start[: ready.model.unknowns.n]) / ready.model.scales[: ready.model.unknowns.n])
-        < accuracy
-    )
+    n = ready.model.unknowns.n
+    assert np.max(np.abs(q[-1] - orbit.start[:n]) / ready.model.scales[:n]) < accuracy
 
 
 def test_orbit_is_periodic_and_stable_below_the_threshold_and_not_above():

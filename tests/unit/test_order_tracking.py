@@ -32,9 +32,8 @@ def test_an_order_comes_back_alone():
 
 def test_a_real_signal_gives_its_cosine():
     number = numbers(20, first=100_000_003)
-    found = tracked(
-        2e-6 * np.cos(3 * 2 * np.pi * (number % PER_TURN) / PER_TURN + 0.4), number, PER_TURN, 6, 3.0, [0, 50]
-    )
+    signal = 2e-6 * np.cos(3 * 2 * np.pi * (number % PER_TURN) / PER_TURN + 0.4)
+    found = tracked(signal, number, PER_TURN, 6, 3.0, [0, 50])
     assert found == pytest.approx(np.full(2, 2e-6 * np.exp(0.4j)), rel=1e-9)
 
 

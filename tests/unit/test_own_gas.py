@@ -71,19 +71,6 @@ def test_rates_and_loads(number):
 
 
 @pytest.mark.parametrize("number", SCENES)
-def test_derivatives(number):
-    """Those that Newton's method has, against central differences."""
-    _, _, _, seal = scene_of(number)
-    y = state_at(np.random.default_rng([SEED, number, 2]), seal, 0.0)
-    scale, matrix = seal.scale(), seal.jacobian(0.0, y)
-    for i in np.random.default_rng(number).integers(0, len(y), 12):
-        step = np.zeros(len(y))
-        step[i] = 1e-6 * scale[i]
-        column = (seal.rates(0.0, y + step) - seal.rates(0.0, y - step)) / 2e-6
-        assert np.max(np.abs(column - matrix[:, i] * scale[i])) <= 1e-4 * np.max(np.abs(column))
-
-
-@pytest.mark.parametrize("number", SCENES)
 def test_starts(number):
     """The steady film, squeezed and sheared."""
     _, run, _, seal = scene_of(number)

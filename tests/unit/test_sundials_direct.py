@@ -10,12 +10,11 @@ import numpy as np
 import pytest
 from scenes import SPEED, fmr, fms, fmsr, prepared, runup
 
-from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scenario.reader import Scenario, read_scenario
 from sealdyn.scene.forces import Contact
 from sealdyn.scene.rings import Stator
 from sealdyn.simulation.simulate import simulate_in_memory
-from sealdyn.solvers import methods, sundials_libraries, sundials_python
+from sealdyn.solvers import methods, sundials_direct, sundials_libraries, sundials_python
 from sealdyn.solvers.contract import Counts, SolverFailure
 from sealdyn.solvers.methods import METHODS
 
@@ -41,10 +40,8 @@ def end(ready, steps, method, tolerance):
 @pytest.mark.parametrize("name", SCENES)
 def test_the_same_motion_as_through_scikit_sundae(name, method):
     """Both within some hundred tolerances of each other, at about the same cost; the sharper the nearer."""
-    ready, wheel = (
-        prepared(SCENES[name], 3 * TURN, 1e-6),
-        getattr(sundials_python, "ida" if method == "ida" else "cvode"),
-    )
+    ready = prepared(SCENES[name], 3 * TURN, 1e-6)
+    wheel = getattr(sundials_python, "ida" if method == "ida" else "cvode")
     if name == "massless" and method != "ida":
         pytest.skip("a massless ring has a residual only")
     for tolerance in (1e-6, 1e-9):
@@ -69,8 +66,6 @@ def test_every_step_has_an_order_and_jacobians_are_counted():
 
 def test_blocks_go_on_without_a_new_start(monkeypatch):
     """Handed over in blocks of seven the steps are the same to the bit."""
-    from sealdyn.solvers import sundials_direct
-
     ready, found = prepared(fms(), 5 * TURN, 1e-6), []
     for rows in (7, 1024):
         monkeypatch.setattr(sundials_direct, "BLOCK", rows)
@@ -115,26 +110,26 @@ def test_a_step_that_is_left_gives_everything_back():
     assert sizes[2] - sizes[1] < 4000
 
 
-def test_another_version_is_refused_and_scikit_sundae_serves(monkeypatch):
-    monkeypatch.setattr(sundials_libraries, "MAJOR", 6)
+@pytest.fixture
+def looked_for_anew(monkeypatch):
+    """Libraries are looked for again, with what a test changes, and after it."""
     sundials_libraries.libraries.cache_clear()
-    try:
-        assert "SUNDIALS 7" in methods.why_slow() and "where 6 is known" in methods.why_slow()
-        ready, counts = prepared(fmr(), TURN, 1e-6), Counts()
-        list(METHODS["adams"](ready.segment(0), 0.0, ready.y0.copy(), "adams", 1e-6, counts))
-        assert counts.back_end == methods.SCIKIT_SUNDAE
-    finally:
-        sundials_libraries.libraries.cache_clear()
+    yield monkeypatch
+    sundials_libraries.libraries.cache_clear()
 
 
-def test_what_compiled_code_would_miss_is_found_first(monkeypatch):
+def test_another_version_is_refused_and_scikit_sundae_serves(looked_for_anew):
+    looked_for_anew.setattr(sundials_libraries, "MAJOR", 6)
+    assert "SUNDIALS 7" in methods.why_slow() and "where 6 is known" in methods.why_slow()
+    ready, counts = prepared(fmr(), TURN, 1e-6), Counts()
+    list(METHODS["adams"](ready.segment(0), 0.0, ready.y0.copy(), "adams", 1e-6, counts))
+    assert counts.back_end == methods.SCIKIT_SUNDAE
+
+
+def test_what_compiled_code_would_miss_is_found_first(looked_for_anew):
     """Linked to a function that is not there, it would end the process."""
-    monkeypatch.setattr(sundials_libraries, "COMPILED", ("CVode", "CVodeOfAnotherName"))
-    sundials_libraries.libraries.cache_clear()
-    try:
-        assert methods.why_slow().endswith("SUNDIALS offers no CVodeOfAnotherName")
-    finally:
-        sundials_libraries.libraries.cache_clear()
+    looked_for_anew.setattr(sundials_libraries, "COMPILED", ("CVode", "CVodeOfAnotherName"))
+    assert methods.why_slow().endswith("SUNDIALS offers no CVodeOfAnotherName")
 
 
 def test_a_setting_that_sundials_refuses_is_told():
@@ -160,10 +155,3 @@ def test_a_run_says_when_it_is_slow(choice):
     back_end, imported, reasons = done.stdout.split(" | ")
     assert back_end.startswith("scikit" if choice else "SUNDIALS") and imported == str(bool(choice))
     assert ("through scikit-sundae, several times slower" in reasons) == bool(choice)
-
-
-def test_steps_stop_at_the_end_of_a_segment():
-    ready = prepared(fms(speed=PiecewiseLinear((0.0, 0.01, 0.02), (1000.0, 1100.0, 1000.0))), 0.02, 1e-6)
-    segment = ready.segment(0)
-    *_, (ts, _, _) = METHODS["adams"](segment, 0.0, ready.y0.copy(), "adams", 1e-6, Counts())
-    assert ts[-1] == segment.length

@@ -20,12 +20,8 @@ TURN = 2 * math.pi / SPEED
 
 def bouncing(amplitude, rate=0.0):
     """A stator on undamped springs in a film that does nothing: dz = amplitude cos(w t) + rate/w sin(w t)."""
-    return fms(
-        film=EMPTY_FILM,
-        stator=Stator(**ring(support=UNDAMPED)),
-        rotor=Rotor(),
-        initial=Initial(stator=RingStart(z=amplitude, z_rate=rate)),
-    )
+    start = Initial(stator=RingStart(z=amplitude, z_rate=rate))
+    return fms(film=EMPTY_FILM, stator=Stator(**ring(support=UNDAMPED)), rotor=Rotor(), initial=start)
 
 
 @pytest.mark.parametrize("method", ["adams", "bdf", "dop853"])
@@ -76,12 +72,8 @@ def test_every_dip_of_an_imposed_gap_is_found(method, order):
 
 def test_dip_of_a_whirling_rigid_rotor():
     """Runout and whirl beat: |g| reaches the sum of both once in the run, between the steps."""
-    scene = fms(
-        film=EMPTY_FILM,
-        shaft=Shaft(speed=SPEED, whirl=[Whirl(ratio=0.42, angle=40e-6, phase=1.0)]),
-        stator=Stator(**ring()),
-        rotor=Rotor(runout=60e-6),
-    )
+    shaft = Shaft(speed=SPEED, whirl=[Whirl(ratio=0.42, angle=40e-6, phase=1.0)])
+    scene = fms(film=EMPTY_FILM, shaft=shaft, stator=Stator(**ring()), rotor=Rotor(runout=60e-6))
     found = run(scene, turns=8, accuracy=1e-8, per_turn=1)
     assert found.record(0)[MOST] == pytest.approx(100e-6, rel=1e-8)
     assert found.record(0)[LEAST] == pytest.approx(20e-6, rel=1e-8)
@@ -103,10 +95,7 @@ def test_collapse_is_located(method):
 def test_a_short_dip_below_the_floor_is_a_collapse():
     """The gap is below the floor for less than one degree of shaft angle, once in 40 turns."""
     ratio = 1 + 1 / 40
-    runout = [
-        AxialRunout(order=1, amplitude=0.5 * CLEARANCE),
-        AxialRunout(order=ratio, amplitude=0.4992 * CLEARANCE, phase=math.pi),
-    ]
+    runout = [AxialRunout(1, 0.5 * CLEARANCE), AxialRunout(ratio, 0.4992 * CLEARANCE, math.pi)]
     scene = fms(film=EMPTY_FILM, stator=Stator(**ring()), rotor=Rotor(axial_runout=runout))
     found = run(scene, turns=40, accuracy=1e-4, method="adams", per_turn=1)
     assert found.outcome.status == "collapsed"
