@@ -120,19 +120,6 @@ def test_a_running_archive_opens_with_its_rows_and_nothing_else(tmp_path):
     run.close()
 
 
-def test_a_record_broken_off_half_way_leaves_the_one_before(tmp_path):
-    path = tmp_path / "run.h5"
-    run = writer(path, interval=0.0)
-    run.append(rows(0, 30), {"row": 30})
-    run.append(rows(30, 40), {"row": 40})
-    # What a kill amid the last write leaves: a record whose end never came.
-    with h5py.File(archive.partial_path(path), "r+") as file:
-        newest = max((0, 1), key=lambda slot: b'"rows": 40' in file["restart/record"][slot].tobytes())
-        file["restart/record"][newest, 40:] = 0
-    assert read_info(path)["rows"] == 30 and last_state(path) == {"row": 30}
-    run.close()
-
-
 def test_rows_wait_in_memory_until_the_interval_or_the_row_limit(tmp_path):
     path = tmp_path / "run.h5"
     run = writer(path, interval=1e9, buffer_rows=100)
@@ -158,7 +145,7 @@ def test_what_an_earlier_run_left_is_not_that_of_a_new_one(tmp_path):
     assert writer(path, resume=True).rows == 0
 
 
-@pytest.mark.parametrize("final", ["ok", "interrupted", None])
+@pytest.mark.parametrize("final", ["interrupted", None])
 def test_a_continued_run_equals_an_unbroken_one(tmp_path, final):
     path = tmp_path / "run.h5"
     run = writer(path)
@@ -254,9 +241,8 @@ def test_a_run_killed_at_any_instant_is_readable_to_its_last_row(tmp_path):
     broken_off = 0
     for kill in range(8):
         path = tmp_path / f"{kill}.h5"
-        child = subprocess.Popen(
-            [sys.executable, "-c", textwrap.dedent(CHILD), path], stdout=subprocess.PIPE, text=True
-        )
+        line = [sys.executable, "-c", textwrap.dedent(CHILD), path]
+        child = subprocess.Popen(line, stdout=subprocess.PIPE, text=True)
         child.stdout.readline()
         while not path.exists() and not archive.partial_path(path).exists():
             time.sleep(1e-3)

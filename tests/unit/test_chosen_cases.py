@@ -108,9 +108,7 @@ def test_the_longest_file_begins_and_stays_whole(suite):
     lines = suite.runpytest_inprocess("-v", "--all", "-n", "0").stdout.str()
     assert lines.index("test_b.py::test_cheap") < lines.index("test_a.py::test_cheap")
     lines = suite.runpytest_subprocess("-v", "--all", "-n", "2", "--dist", "loadfile", "--no-loadscope-reorder")
-    processes = {
-        (file, process) for process, file in re.findall(r"\[(gw\d)\].* PASSED (test_[ab])", lines.stdout.str())
-    }
+    processes = set(re.findall(r"\[(gw\d)\].* PASSED (test_[ab])", lines.stdout.str()))
     assert len(processes) == 2
 
 
@@ -144,10 +142,8 @@ def test_measured_times_choose_the_next_plain_run(suite, processes):
     # Of a named file the times are written anew, and the rest stays.
     ran(suite, "--measure", "test_b.py", *alike)
     again = json.loads((suite.path / "durations.json").read_text())
-    assert (
-        again["seconds_a_file"] == found["seconds_a_file"]
-        and again["files"]["test_a.py"] == found["files"]["test_a.py"]
-    )
+    files = again["files"], found["files"]
+    assert again["seconds_a_file"] == found["seconds_a_file"] and files[0]["test_a.py"] == files[1]["test_a.py"]
 
 
 def test_every_file_of_physics_has_a_core_case():

@@ -13,7 +13,7 @@ from sealdyn.scenario.reader import Scenario, read_scenario
 from sealdyn.scenario.tables import Run
 from sealdyn.simulation.simulate import simulate
 
-SHORT = ("run.accuracy=1e-5", "run.samples_per_turn=16")
+SEALED = ("stator.secondary_seal.radius=45 mm", "stator.secondary_seal.line_friction=40 N/m")
 # A scene each: one method's history, changes of the equations, fields, a film of unknowns, tries, a radial seal.
 CASES = {
     "adams": ("fms_reference", ("run.solver=adams", "run.turns=30"), [2, 3]),
@@ -24,6 +24,8 @@ CASES = {
     "expm": ("free_precession", (), [2, 1]),
     "a film with unknowns": ("rayleigh_pads", (), [2]),
     "contacts": ("rub_chaotic", ("run.turns=12",), [2, 9]),
+    "an O-ring that sticks": ("rub", (*SEALED, "run.turns=45"), [2, 9]),
+    "a sweep": ("housing_sweep", ("run.duration=0.1",), [1, 1]),
     "conditions that change": ("runup_through_critical", (), [5, 8]),
     "done again, sharper": ("squeeze", (), [1, 8, 12]),
     "a seal around the shaft": ("radial/circumferential_reference", (), [1]),

@@ -8,7 +8,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-import h5py
 import pytest
 
 ROOT = Path(__file__).parents[2]
@@ -45,28 +44,8 @@ def test_the_film_by_a_table(house):
     assert found["leakage"]["mean"] is None and found["friction"]["power"] is None
     again = answer(house, "run", "a.h5", "--out", "again.h5")
     assert again["film"] == found["film"]
-
-
-def test_a_film_from_outside_is_named_where_it_is_gone_or_another(house):
-    """Its digest is kept, nothing that is executed."""
-    folder, _ = house
-    scenario = str(ROOT / "scenarios" / "fms_reference.toml")
-    film = ("--set", "film.model=table", "--set", "run.turns=2")
-    answer(house, "run", scenario, *film, "--out", "kept.h5")
-    with h5py.File(folder / "kept.h5") as file:
-        made = json.loads(file.attrs["outside"])["films/table"]
-    gone = json.loads(begun(house, "run", "kept.h5", SEALDYN_PATH="").stdout)
-    assert gone["status"] == "invalid" and "[film] model" in gone["message"] and made in gone["message"]
     near = json.loads(begun(house, "run", scenario, "--set", "film.model=tabel").stdout)
     assert "table" in near["message"]
-    other = folder / "other"
-    shutil.copytree(folder / "films", other / "films", ignore=shutil.ignore_patterns("__pycache__"))
-    with (other / FILM).open("a") as source:
-        source.write("\n# Measured anew.\n")
-    changed = begun(house, "run", "kept.h5", SEALDYN_PATH=str(other))
-    assert json.loads(changed.stdout)["status"] == "invalid" and made in changed.stdout
-    taken = begun(house, "run", "kept.h5", "--set", "film.model=table", "--out", "c.h5", SEALDYN_PATH=str(other))
-    assert taken.returncode == 0, taken.stderr
 
 
 def test_names_of_the_package_are_taken(house):

@@ -1,5 +1,4 @@
-"""Interruption: processes that hear a signal or do not, workers, a run with contact and stick-slip stopped and
-continued, and files that HDF5 does not come to an end with."""
+"""Interruption: processes that hear a signal or do not, workers, and files that HDF5 does not come to an end with."""
 
 import json
 import os
@@ -9,17 +8,15 @@ import sys
 import time
 
 import h5py
-import numpy as np
 import pytest
 from command import SCENARIOS
 
-from sealdyn.archive import ArchiveError, column, read_info
+from sealdyn.archive import ArchiveError
 from sealdyn.archive.files import must_be_sound
 from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.stick_slip import StickSlip
 from sealdyn.numerics.interruption import CODE
 from sealdyn.scenario.reader import read_scenario
-from sealdyn.simulation.simulate import simulate
 
 # Measured: GRACE and some hundredths; a machine under load needs several times as long.
 SOON = 10.0
@@ -101,26 +98,7 @@ def test_workers_do_not_outlive_their_parent(number):
 
 
 RUB = SCENARIOS / "rub.toml"
-SEAL = ["stator.secondary_seal.radius=45 mm", "stator.secondary_seal.line_friction=40 N/m", "run.turns=45"]
-
-
-def test_continued_as_if_never_stopped(tmp_path):
-    """Stopped early; later, and more than once: test_continued_runs.py."""
-    scenario = read_scenario(RUB, SEAL)
-    whole = simulate(scenario, tmp_path / "whole.h5")
-    calls = iter(range(10**9))
-    first = simulate(scenario, tmp_path / "part.h5", stop=lambda: next(calls) == 3)
-    assert first.status == "interrupted"
-    again = simulate(scenario, tmp_path / "part.h5", resume=True)
-    assert again.status == "ok"
-    assert again.summary["certificate"] == whole.summary["certificate"]
-    assert again.summary["contact"]["touches"] == whole.summary["contact"]["touches"] > 3
-    assert again.summary["secondary_seal"]["sticks"] == whole.summary["secondary_seal"]["sticks"] >= 1
-    kinds = [[event["kind"] for event in read_info(path)["events"]] for path in (again.archive, whole.archive)]
-    assert kinds[0] == kinds[1]
-    for name in ("h_min", "axial_gap_change"):
-        ours, theirs = (column(result.archive, name) for result in (again, whole))
-        assert np.array_equal(ours, theirs)
+SEAL = ["stator.secondary_seal.radius=45 mm", "stator.secondary_seal.line_friction=40 N/m"]
 
 
 @pytest.mark.core

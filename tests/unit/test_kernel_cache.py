@@ -58,9 +58,8 @@ def package(request, tmp_path):
             user.touch()
 
     def call():
-        done = subprocess.run(
-            [sys.executable, "-c", CALL], cwd=tmp_path, env=environment, capture_output=True, text=True
-        )
+        line = [sys.executable, "-c", CALL]
+        done = subprocess.run(line, cwd=tmp_path, env=environment, capture_output=True, text=True)
         assert done.returncode == 0, done.stderr
         result, misses, kept = done.stdout.split()
         return (float(result), int(misses), int(kept)), done.stderr
@@ -164,9 +163,8 @@ def test_sources_of_kernels_hold_all_that_kernels_are_made_of():
             modules = [target.with_suffix(".py")]
             modules += [target / f"{name}.py" for name in ("__init__", *re.findall(r"\w+", names))]
             ahead += [file for file in modules if file in texts and file not in found]
-    assert found - {PACKAGE / "kernel_cache.py", PACKAGE / "extensions.py"} <= set(
-        sealdyn.kernel_cache.kernel_sources()
-    )
+    found -= {PACKAGE / "kernel_cache.py", PACKAGE / "extensions.py"}
+    assert found <= set(sealdyn.kernel_cache.kernel_sources())
 
 
 def test_only_what_has_an_address_is_a_function_value():
@@ -220,22 +218,13 @@ for kernel in (one, two, three, four):
 """
 
 
-def cut(data):
-    return data[: len(data) // 2]
-
-
-def one_bit(data):
-    """In the machine code: numba would run it."""
-    at = len(data) // 2
-    return data[:at] + bytes([data[at] ^ 1]) + data[at + 1 :]
-
-
-def nonsense(data):
-    return bytes(255 - byte for byte in data)
-
-
-def nothing(data):
-    return b""
+# Half a file, one with a bit turned (in the machine code: numba would run it), nonsense, nothing.
+DAMAGES = (
+    lambda data: data[: len(data) // 2],
+    lambda data: data[: (at := len(data) // 2)] + bytes([data[at] ^ 1]) + data[at + 1 :],
+    lambda data: bytes(255 - byte for byte in data),
+    lambda data: b"",
+)
 
 
 @pytest.fixture(scope="module")
@@ -268,7 +257,7 @@ def printed(hits):
 def test_damaged(warm, files):
     """Each of the four kernels in a way of its own."""
     call, kept = warm
-    for path, damage in zip(kept(files), (cut, one_bit, nonsense, nothing), strict=True):
+    for path, damage in zip(kept(files), DAMAGES, strict=True):
         path.write_bytes(damage(path.read_bytes()))
     answer, said = call()
     assert answer == printed(0)

@@ -176,11 +176,8 @@ def test_a_file_that_has_changed_is_read_again(folder):
 
 
 def test_where_a_film_of_ones_own_stands(fed, folder):
-    for file, told in (
-        (folder.parent / "fed_film.py", "films/NAME.py"),
-        (folder / "gone.py", "films/NAME.py"),
-        (FILE, "another name"),
-    ):
+    nowhere = dict.fromkeys((folder.parent / "fed_film.py", folder / "gone.py"), "films/NAME.py")
+    for file, told in (nowhere | {FILE: "another name"}).items():
         with pytest.raises(ScenarioError) as refused:
             fed.with_film(file)
         assert refused.value.key == "film.model" and told in refused.value.expected

@@ -12,7 +12,6 @@ from command import SCENARIOS
 import sealdyn
 from sealdyn import ScenarioError, read_scenario
 from sealdyn.extensions import VARIABLE
-from sealdyn.numerics.parallel import content_keys
 from sealdyn.scene.scene import unforced
 
 OWN, REFERENCE = SCENARIOS / "own", SCENARIOS / "fms_reference.toml"
@@ -54,9 +53,8 @@ def folder(tmp_path, monkeypatch):
 @pytest.mark.core
 def test_a_tone_of_ones_own_is_the_tone_of_the_package(folder):
     """The motion is that of [[stator.load.tone]] to the accuracy; its work is audited."""
-    own = read_scenario(
-        REFERENCE, ["run.turns=4", "stator.load.model=own_tone", "stator.load.own_tone.frequency=300 Hz"]
-    )
+    words = ["run.turns=4", "stator.load.model=own_tone", "stator.load.own_tone.frequency=300 Hz"]
+    own = read_scenario(REFERENCE, words)
     tone = {"frequency": "300 Hz", "force": "5 N", "moment": "0.01 N*m"}
     given = read_scenario(REFERENCE, ["run.turns=4"]).with_({"stator.load.tone": [tone]})
     found, wanted = (sealdyn.simulate(scenario) for scenario in (own, given))
@@ -139,18 +137,10 @@ def test_a_film_that_knows_no_leakage_under_a_load_is_certified(pulsed):
 
 def test_a_study_of_ones_own_keeps_its_points(pulsed, tmp_path):
     flags = {"key": "stator.load.gear_pulse.force", "values": [10.0, 40.0]}
-    answers = [
-        sealdyn.run_study("least-film", pulsed, tmp_path / f"{n}.h5", flags=flags, workers=n, results=tmp_path / "kept")
-        for n in (2, 1)
-    ]
+    kept = {"flags": flags, "results": tmp_path / "kept"}
+    answers = [sealdyn.run_study("least-film", pulsed, tmp_path / f"{n}.h5", workers=n, **kept) for n in (2, 1)]
     assert answers[0]["h_min"] == answers[1]["h_min"] and len([*(tmp_path / "kept").iterdir()]) == 2
     assert "least-film" in sealdyn.list_studies()
-
-
-def test_kept_points_hang_on_the_source_of_a_load(folder):
-    keys = content_keys(content_keys, [1])
-    (folder / "own_tone.py").write_text(TONE + "\n# Another.\n")
-    assert content_keys(content_keys, [1]) != keys
 
 
 @pytest.mark.slow

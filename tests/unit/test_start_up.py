@@ -101,7 +101,6 @@ def test_a_linear_run_needs_no_sundials(tmp_path):
     assert not named(kernels, (*OF_OTHERS, "films.radial.film.wrench"))
 
 
-@pytest.mark.parametrize("key, kernel", [("film.cavitation_pressure='0 bar'", "floored.wrench")])
-def test_what_a_scene_has_is_made_ready(tmp_path, key, kernel):
-    _, kernels = run(tmp_path, "fms_reference", "--set", "run.turns=1", "--set", key)
-    assert named(kernels, [kernel])
+def test_what_a_scene_has_is_made_ready(tmp_path):
+    _, kernels = run(tmp_path, "fms_reference", "--set", "run.turns=1", "--set", "film.cavitation_pressure='0 bar'")
+    assert named(kernels, ["floored.wrench"])

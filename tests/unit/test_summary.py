@@ -23,6 +23,11 @@ from sealdyn.simulation.simulate import prepare_run, simulate_in_memory
 SEAL = SCENARIOS / "fms_reference.toml"
 
 
+def summary_of(changes, path=SEAL):
+    """With critical and resonance speeds."""
+    return simulate_in_memory(read_scenario(path, changes), speeds=True)
+
+
 @pytest.mark.parametrize(
     "start, speed, advised", [("rest", 1000, True), ("rest", 6500, False), ("steady", 6500, False)]
 )
@@ -35,10 +40,8 @@ def test_a_run_that_is_not_steady_is_told_to_start_otherwise_where_that_helps(st
 
 def test_a_run_that_begins_settled_has_no_transient():
     """Nonlinear motion leaves the linear start by less than the accuracy, though the printed digits differ."""
-    scenario = read_scenario(
-        SCENARIOS / "fmr_reference.toml", ["run.turns=12", "run.start='auto'", "run.accuracy=1e-4"]
-    )
-    summary = simulate_in_memory(scenario, speeds=True)
+    changes = ["run.turns=12", "run.start='auto'", "run.accuracy=1e-4"]
+    summary = summary_of(changes, SCENARIOS / "fmr_reference.toml")
     assert summary["model"]["start"] == "steady"
     assert summary["relative_misalignment"]["max"] != summary["relative_misalignment"]["steady_max"]
     films = numbers_of(summary, "h_min").values()
@@ -111,33 +114,18 @@ def words_of(summary):
 
 @pytest.mark.parametrize("name", ["fms_reference", "run_in", "gas_dam_reference", "hang_up"])
 def test_what_is_printed_first_is_at_most_fifteen_lines(name):
-    scenario = read_scenario(SCENARIOS / f"{name}.toml", ["run.turns=1", "run.accuracy=1e-3"])
-    summary = simulate_in_memory(scenario, speeds=True) | {"archive": "x.h5", "figure": None, "wall_time": 1.0}
-    answer = run_answer(summary)
+    summary = summary_of(["run.turns=1", "run.accuracy=1e-3"], SCENARIOS / f"{name}.toml")
+    answer = run_answer(summary | {"archive": "x.h5", "figure": None, "wall_time": 1.0})
     few, all_of_it = (lines(name, answer, verbose) for verbose in (False, True))
     assert len(few) - len(answer.notes) <= 16 and set(few) <= set(all_of_it)
     assert all(any(warning in line for line in few) for warning in summary["warnings"])
 
 
 def test_a_contact_that_lasts_all_the_run_is_told_as_that():
-    scenario = read_scenario(SEAL, ["run.turns=1"])
-    summary = simulate_in_memory(scenario, speeds=True)
-    numbers = (
-        "depth",
-        "impulse",
-        "share_of_closing",
-        "share_of_load",
-        "wear_rate",
-        "max_pressure",
-        "max_area_fraction",
-    )
-    contact = dict.fromkeys(numbers, 0.1) | {
-        "touches": 1,
-        "grazing": 0,
-        "wears": True,
-        "first": 0.0,
-        "force": {"max": 1.0},
-    }
+    summary = summary_of(["run.turns=1"])
+    shares = "share_of_closing", "share_of_load", "max_area_fraction"
+    contact = dict.fromkeys(("depth", "impulse", "wear_rate", "max_pressure", *shares), 0.1)
+    contact |= {"touches": 1, "grazing": 0, "wears": True, "first": 0.0, "force": {"max": 1.0}}
     end = summary["end"]["time"]
     for longest, all_of_it in ((end, True), (0.9 * end, False)):
         told = numbers_of({**summary, "contact": contact | {"longest": longest}}, "touch")
@@ -145,15 +133,14 @@ def test_a_contact_that_lasts_all_the_run_is_told_as_that():
 
 
 def test_the_settled_part_comes_first_and_the_transient_by_its_name():
-    scenario = read_scenario(SEAL, ["run.turns=12", "run.start='rest'", "run.accuracy=1e-4"])
-    summary = simulate_in_memory(scenario, speeds=True)
+    summary = summary_of(["run.turns=12", "run.start='rest'", "run.accuracy=1e-4"])
     low, tilt = summary["h_min"], summary["relative_misalignment"]
     # The start at rest is thinner than all that follows.
     assert low["steady"] > 1.05 * low["value"] and tilt["steady_max"] < 0.5 * tilt["max"]
     film = numbers_of(summary, "h_min")
     assert film["settled"] == low["steady"] and film["whole run"] in (low["value"], low["of_clearance"])
     assert numbers_of(summary, "misalignment")["largest of the run"] == tilt["max"]
-    short = simulate_in_memory(read_scenario(SEAL, ["run.turns=1.5", "run.start='rest'"]), speeds=True)
+    short = summary_of(["run.turns=1.5", "run.start='rest'"])
     assert short["h_min"]["steady"] is None and "steady state" in parts_of(short)
     assert "settled" not in numbers_of(short, "h_min")
 
@@ -162,18 +149,13 @@ def test_the_settled_part_comes_first_and_the_transient_by_its_name():
 def test_the_margin_ends_where_asperities_meet():
     """Linear theory of the reference seal: gap over reach at an edge; asperities of 3 rms take their height away."""
     # So light that the film is laminar up to there.
-    rough = [
-        "contact.compressive_strength='300 MPa'",
-        "film.density=100",
-        "run.turns=1",
-        "run.accuracy=1e-4",
-        "run.start='rest'",
-    ]
+    plain = ["film.density=100", "run.turns=1", "run.accuracy=1e-4", "run.start='rest'"]
+    rough = ["contact.compressive_strength='300 MPa'", *plain]
     margins = {}
     for rms in (0.1, 1.0):
         scenario = read_scenario(SEAL, [*rough, f"contact.roughness='{rms} um'"])
         margins[rms] = simulate_in_memory(scenario)["contact_margin"]
-    smooth = simulate_in_memory(read_scenario(SEAL, rough[1:]))["contact_margin"]
+    smooth = simulate_in_memory(read_scenario(SEAL, plain))["contact_margin"]
     assert margins[0.1] == pytest.approx(smooth * (10 - 0.3) / 10, rel=1e-6)
     assert margins[1.0] == pytest.approx(smooth * (10 - 3.0) / 10, rel=1e-6)
 
@@ -181,7 +163,7 @@ def test_the_margin_ends_where_asperities_meet():
 def test_a_run_whose_speed_changes_tells_from_where_to_where():
     short = ["run.duration=0.02", "run.start='rest'", "run.accuracy=1e-3"]
     for ramp, end in ((["shaft.speed={time=[0, 1], value=[1000, 2000]}"], 1020.0), ([], 1000.0)):
-        found = simulate_in_memory(read_scenario(SEAL, [*short, *ramp]), speeds=True)
+        found = summary_of([*short, *ramp])
         assert found["speed"] == pytest.approx({"start": 1000.0, "end": end})
         assert ("speed" in parts_of(found)) == bool(ramp)
 
@@ -195,9 +177,8 @@ def test_a_margin_ends_where_tilts_are_small_no_more():
     assert found["contact_margin_limit"] == "small tilts" and own < 0.1 * found["film"]["clearance"]
     # The ring tilts by as much as the rotor is out of square, and a ten-thousandth more.
     assert found["contact_margin"] * scenario.scene.rotor.runout == pytest.approx(SMALL_TILT, rel=1e-3)
-    assert (
-        simulate_in_memory(read_scenario(SEAL, ["run.turns=1", "film.density=100"]))["contact_margin_limit"] == "touch"
-    )
+    held = simulate_in_memory(read_scenario(SEAL, ["run.turns=1", "film.density=100"]))
+    assert held["contact_margin_limit"] == "touch"
 
 
 @pytest.mark.parametrize("reynolds, ends", [(0.8, "laminar film"), (0.2, "touch"), (1.2, "touch")])
@@ -270,13 +251,9 @@ def test_asperities_that_touch_without_forcing_leave_no_margin():
 
 
 def test_faces_without_a_wear_coefficient_have_no_rate_of_wear():
-    bare = [
-        "run.turns=0.5",
-        "run.accuracy=1e-3",
-        "contact.stator_wear_coefficient=0",
-        "contact.rotor_wear_coefficient=0",
-    ]
-    for changes, wears in ((bare, False), (bare[:2], True)):
+    plain = ["run.turns=0.5", "run.accuracy=1e-3"]
+    bare = [*plain, "contact.stator_wear_coefficient=0", "contact.rotor_wear_coefficient=0"]
+    for changes, wears in ((bare, False), (plain, True)):
         scenario = read_scenario(SCENARIOS / "run_in.toml", changes)
         assert ("wear" in parts_of(simulate_in_memory(scenario, speeds=True))) == wears
 
@@ -284,8 +261,7 @@ def test_faces_without_a_wear_coefficient_have_no_rate_of_wear():
 def test_heat_that_no_leakage_carries_is_told_per_area():
     changes = ["film.clearance=1 um", "film.coning=0.3 mrad", "run.turns=1", "run.accuracy=1e-3"]
     for speed, hot in ((80, False), (250, True)):
-        scenario = read_scenario(SEAL, [*changes, f"shaft.speed={speed} rad/s"])
-        summary = simulate_in_memory(scenario, speeds=True)
+        summary = summary_of([*changes, f"shaft.speed={speed} rad/s"])
         told = numbers_of(summary, "friction")
         assert (summary["friction"]["temperature_rise"] > 100) == hot == ("of face" in told)
         assert ("would heat the leakage by" in told) != hot
@@ -295,8 +271,7 @@ def test_a_gas_dam_says_whether_it_chokes_and_how_fast_the_gas_leaves():
     """Zuk (1972): parallel faces at a high pressure choke, at a low one the gas is slow."""
     for pressure, chokes in (("60 bar", True), ("1.5 bar", False)):
         changes = [f"film.inner_pressure={pressure}", "run.turns=0.2", "run.accuracy=1e-2"]
-        scenario = read_scenario(SCENARIOS / "gas_dam_reference.toml", changes)
-        summary = simulate_in_memory(scenario, speeds=True)
+        summary = summary_of(changes, SCENARIOS / "gas_dam_reference.toml")
         mach = summary["film"]["exit_mach"]
         assert (mach == pytest.approx(1.0, rel=1e-6)) if chokes else 0.0 < mach < 0.95
         assert mach in numbers_of(summary, "leakage").values()
@@ -328,8 +303,7 @@ def test_beside_the_means_of_a_run_stands_the_aligned_seal_at_its_end(name, chan
 
 def test_a_critical_speed_of_no_seal_is_none():
     """Stiff films of a fraction of a micrometre had theirs at millions of rpm."""
-    scenario = read_scenario(SEAL, ["run.turns=2", "shaft.speed='9000 rpm'"])
-    summary = simulate_in_memory(scenario, speeds=True) | {"wall_time": 1.0}
+    summary = summary_of(["run.turns=2", "shaft.speed='9000 rpm'"]) | {"wall_time": 1.0}
     found = summary["stability"]
     assert found["fastest"] == pytest.approx(1000.0 / 0.040)
 
