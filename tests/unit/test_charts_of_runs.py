@@ -24,26 +24,37 @@ def square(columns):
     return columns | {name: 0 * columns[name] for name in columns if "tilt" in name or "misalignment" in name}
 
 
+@pytest.fixture
+def chart(tmp_path):
+    """The figure of a made-up run; `written`: saved too."""
+
+    def of(kind, columns, *status, written=False, **options):
+        archive = write(tmp_path / "seal.h5", columns, *status, **options)
+        return drawn(kind, archive, tmp_path / "chart.png", written=written)
+
+    return of
+
+
 def test_numbers_are_those_of_print():
     assert [written(value, 3) for value in (4797.0, 2710.4, 31.52, 0.012345)] == ["4800", "2710", "31.5", "0.0123"]
     assert written(-64.31, 4) == "−64.31" and written(43219.7, 4) == "43 220" and written(1e-9, 3) == "1e−09"
 
 
 @pytest.mark.parametrize("stiffness, told", [(5100.0, "10.2 N/µm, 5100 N m/rad"), (7.1e6, "10.2 N/µm, 7100 kN m/rad")])
-def test_stiffnesses_are_told_without_powers_of_ten(tmp_path, stiffness, told):
+def test_stiffnesses_are_told_without_powers_of_ten(chart, stiffness, told):
     summary = SUMMARY | {"film": {"axial_stiffness": 1.02e7, "tilt_stiffness": stiffness}}
-    figure = drawn(overview, write(tmp_path / "seal.h5", whirling(samples=800), summary=summary), tmp_path / "c.png")
+    figure = chart(overview, whirling(samples=800), summary=summary, written=True)
     assert told in [words for ax in figure.axes for words in names(ax)]
 
 
-def test_leakage_has_one_unit_on_the_page(tmp_path):
+def test_leakage_has_one_unit_on_the_page(chart, tmp_path):
     columns = whirling(samples=800)
     much = {name: 60 * columns[name] for name in ("leakage_inner", "leakage_outer")}
     summary = SUMMARY | {"leakage": {"mean": 60 * 43219.7 / 3.6e9}}
-    figure = drawn(overview, write(tmp_path / "a.h5", columns | much, summary=summary), tmp_path / "c.png")
+    figure = chart(overview, columns | much, summary=summary, written=True)
     assert panel(figure, "Leakage").get_ylabel() == "l/min" and "43.22 l/min" in names(panel(figure, "Key numbers"))
     gas = SUMMARY | {"leakage": {"mean": 1e-6, "conditions": {"pressure": 101325.0}}}
-    figure = drawn(overview, write(tmp_path / "b.h5", columns, summary=gas), tmp_path / "c.png")
+    figure = chart(overview, columns, summary=gas, written=True)
     normal = panel(figure, "Leakage").get_ylabel()
     conditions = normal.removeprefix("l/min")
     assert conditions and f"3600 ml/h{conditions}" in names(panel(figure, "Key numbers"))
@@ -54,12 +65,11 @@ def test_leakage_has_one_unit_on_the_page(tmp_path):
 
 
 @pytest.mark.parametrize("brief", [False, True], ids=["all along", "once"])
-def test_contact_beside_a_spectrum(tmp_path, brief):
+def test_contact_beside_a_spectrum(chart, brief):
     columns = whirling(samples=800)
     force = np.full(800, 20.0) if not brief else np.where(np.arange(800) < 3, 20.0, 0.0)
     summary = SUMMARY | {"contact": {"touch_at": 1e-6, "touches": 1, "share_of_closing": 0.00663}}
-    archive = write(tmp_path / "seal.h5", columns | {"contact_force": force}, summary=summary)
-    figure = drawn(overview, archive, tmp_path / "chart.png")
+    figure = chart(overview, columns | {"contact_force": force}, summary=summary, written=True)
     assert text_trouble(figure) == ([], [])
     ax = panel(figure, "Contact force")
     (told,) = [text.get_text() for text in ax.get_legend().get_texts()]
@@ -68,10 +78,10 @@ def test_contact_beside_a_spectrum(tmp_path, brief):
     assert len(marks) == brief and all(x == 0 and y == 20 for x, y in marks)
 
 
-def test_names_of_levels_leave_a_film_that_swings_through_them(tmp_path):
+def test_names_of_levels_leave_a_film_that_swings_through_them(chart):
     columns = whirling(samples=1600)
     columns["h_min"] = 1e-5 * (1 + 0.1 * np.sin(columns["time"] * 2000))
-    figure = drawn(overview, write(tmp_path / "seal.h5", columns), tmp_path / "chart.png")
+    figure = chart(overview, columns, written=True)
     ax = panel(figure, "Smallest film thickness")
     assert not any(names(ax)) and [t.get_text() for t in ax.get_legend().get_texts()] == ["clearance 10 µm", "contact"]
     figure.draw_without_rendering()
@@ -106,9 +116,9 @@ def test_frequencies_of_a_sweep_stand_apart(tmp_path):
         assert len(boxes) > 1 and not any(a.overlaps(b) for a, b in itertools.combinations(boxes, 2)), ratio
 
 
-def test_thousands_of_turns_have_ticks_apart(tmp_path):
+def test_thousands_of_turns_have_ticks_apart(chart):
     columns = whirling(samples=32 * 3000 + 1, turns=3000)
-    figure = drawn(overview, write(tmp_path / "seal.h5", columns), tmp_path / "chart.png", written=False)
+    figure = chart(overview, columns)
     ax = panel(figure, "Smallest film thickness, last 4 turns")
     figure.draw_without_rendering()
     low, high = ax.get_xlim()
@@ -118,16 +128,15 @@ def test_thousands_of_turns_have_ticks_apart(tmp_path):
     assert all(other.x0 - box.x1 > 0.3 * box.width for box, other in itertools.pairwise(boxes))
 
 
-def test_a_panel_of_the_last_turns_has_something_to_show(tmp_path):
-    archive = write(tmp_path / "seal.h5", whirling(samples=60, turns=400))
-    figure = drawn(overview, archive, tmp_path / "chart.png", written=False)
+def test_a_panel_of_the_last_turns_has_something_to_show(chart):
+    figure = chart(overview, whirling(samples=60, turns=400))
     assert not any("last" in ax.get_title("left") for ax in figure.axes)
 
 
-def test_a_warning_of_one_word_tells_its_reason(tmp_path):
+def test_a_warning_of_one_word_tells_its_reason(chart):
     warnings = ["accuracy: errors add up over 9 periods; adams keeps 1e-9 at best", "not isothermal: friction heats"]
-    archive = write(tmp_path / "seal.h5", whirling(samples=200), summary=SUMMARY | {"warnings": warnings})
-    words = [text.get_text() for text in drawn(overview, archive, tmp_path / "chart.png", written=False).texts]
+    figure = chart(overview, whirling(samples=200), summary=SUMMARY | {"warnings": warnings})
+    words = [text.get_text() for text in figure.texts]
     assert "warning: accuracy: errors add up over 9 periods; not isothermal" in words
 
 
@@ -155,17 +164,16 @@ def test_an_order_between_the_lines_is_located():
     assert [order for order, _ in found] == [0.5, 1.0]
 
 
-def test_a_rotating_whirl_is_named_though_others_are_near(tmp_path):
+def test_a_rotating_whirl_is_named_though_others_are_near(chart):
     columns = whirling(samples=64 * 20 + 1, turns=20)
     at = columns["time"] * 1000 / (2 * np.pi)
     tilt = 1e-6 * sum(whirl(order, at) / (1 + abs(order)) for order in (-1, -0.5, 0, 0.5, 1))
     columns |= {"relative_tilt_x": tilt.real, "relative_tilt_y": tilt.imag}
-    figure = drawn(spectrum, write(tmp_path / "seal.h5", columns), tmp_path / "chart.png", written=False)
-    found = {words.split("×")[0] for words in names(panel(figure, "Relative tilt"))}
+    found = {words.split("×")[0] for words in names(panel(chart(spectrum, columns), "Relative tilt"))}
     assert found == {"−1", "−0.5", "0", "0.5", "1"}
 
 
-def test_few_turns_have_no_spectrum_and_their_noise_no_warning(tmp_path):
+def test_few_turns_have_no_spectrum_and_their_noise_no_warning(chart, tmp_path):
     archive = write(tmp_path / "a.h5", whirling(samples=200, turns=3))
     figure = drawn(spectrum, archive, tmp_path / "chart.png", written=False)
     assert len(figure.axes) == 1 and "fewer than four turns" in names(figure.axes[0])[0]
@@ -174,65 +182,59 @@ def test_few_turns_have_no_spectrum_and_their_noise_no_warning(tmp_path):
     columns = whirling(samples=64 * 5 + 1, turns=5)
     tilt = 1e-6 * (0.2 + np.exp(1j * 1000 * columns["time"])) + 1e-9 * np.random.default_rng(0).normal(size=321)
     columns |= {"relative_tilt_x": tilt.real, "relative_tilt_y": tilt.imag}
-    figure = drawn(spectrum, write(tmp_path / "b.h5", columns), tmp_path / "chart.png", written=False)
-    ax = panel(figure, "Relative tilt")
+    ax = panel(chart(spectrum, columns), "Relative tilt")
     assert "last 4 turns" in ax.get_xlabel() and not any("folded" in words for words in names(ax))
     assert [words.split("×")[0] for words in names(ax)] == ["1", "0"]
 
 
-def test_a_drift_is_no_order(tmp_path):
+def test_a_drift_is_no_order(chart):
     columns = square(whirling(samples=64 * 20 + 1, turns=20))
     columns["axial_gap_change"] = 1e-6 * np.exp(-columns["time"] * 30)
-    figure = drawn(spectrum, write(tmp_path / "seal.h5", columns), tmp_path / "chart.png", written=False)
-    assert names(panel(figure, "Axial motion")) == []
+    assert names(panel(chart(spectrum, columns), "Axial motion")) == []
 
 
 # --- sections ---------------------------------------------------------------------------------------------
 
 
-def test_a_section_of_square_faces_is_their_film(tmp_path):
-    archive = write(tmp_path / "seal.h5", square(whirling(samples=800)))
-    figure = drawn(poincare, archive, tmp_path / "chart.png", written=False)
+def test_a_section_of_square_faces_is_their_film(chart):
+    figure = chart(poincare, square(whirling(samples=800)))
     assert [ax.get_title("left") for ax in figure.axes] == ["Once per turn: smallest film thickness"]
 
 
-def test_a_section_counts_passages_and_enlarges_no_rounding(tmp_path):
+def test_a_section_counts_passages_and_enlarges_no_rounding(chart):
     columns = whirling(samples=64 * 3 + 1, turns=3)
     tilt = 1e-6 + 1e-4 * np.exp(1j * 1000 * columns["time"]) * (1 + 1e-6 * np.arange(193))
     columns |= {"relative_tilt_x": tilt.real, "relative_tilt_y": tilt.imag}
-    figure = drawn(poincare, write(tmp_path / "seal.h5", columns), tmp_path / "chart.png", written=False)
+    figure = chart(poincare, columns)
     ax = panel(figure, "Once per turn: relative tilt")
     assert ax.get_legend().get_texts()[0].get_text() == "last of 4 passages"
     low, high = ax.get_xlim()
     # Values differ by 0.02 %; that is drawn, less is not.
     assert high - low < 0.1 * high
     columns |= {"relative_tilt_x": tilt.real / np.abs(tilt) * 1e-4, "relative_tilt_y": tilt.imag / np.abs(tilt) * 1e-4}
-    figure = drawn(poincare, write(tmp_path / "b.h5", columns), tmp_path / "chart.png", written=False)
-    low, high = panel(figure, "Once per turn: relative tilt").get_xlim()
+    low, high = panel(chart(poincare, columns), "Once per turn: relative tilt").get_xlim()
     assert high - low > 10
 
 
-def test_a_section_looks_at_what_has_settled(tmp_path):
+def test_a_section_looks_at_what_has_settled(chart):
     columns = whirling(samples=64 * 40 + 1, turns=40, tilt=1e-6)
     columns["relative_tilt_x"] = columns["relative_tilt_x"] + 1e-3 * np.exp(-columns["time"] * 1000)
-    figure = drawn(poincare, write(tmp_path / "seal.h5", columns), tmp_path / "chart.png", written=False)
-    ax = panel(figure, "Once per turn: relative tilt")
+    ax = panel(chart(poincare, columns), "Once per turn: relative tilt")
     assert ax.get_title("left").endswith("last 21 passages") and ax.get_xlim()[1] < 10
 
 
-def test_rare_samples_have_no_section(tmp_path):
-    archive = write(tmp_path / "seal.h5", whirling(samples=90, turns=30))
-    figure = drawn(poincare, archive, tmp_path / "chart.png", written=False)
+def test_rare_samples_have_no_section(chart):
+    figure = chart(poincare, whirling(samples=90, turns=30))
     assert len(figure.axes) == 1 and "samples per turn" in names(figure.axes[0])[0]
 
 
 # --- film -------------------------------------------------------------------------------------------------
 
 
-def test_a_film_of_square_faces_is_drawn_over_the_turns(tmp_path):
+def test_a_film_of_square_faces_is_drawn_over_the_turns(chart):
     columns = square(whirling(samples=800))
     columns["h_min"] = 1e-5 + columns["axial_gap_change"]
-    figure = drawn(film, write(tmp_path / "seal.h5", columns, film={**FILM, "coning": 0.0}), tmp_path / "chart.png")
+    figure = chart(film, columns, film={**FILM, "coning": 0.0}, written=True)
     ax = panel(figure, "Film thickness, even around the circle")
     assert len(ax.lines) == 2 and not ax.images
     np.testing.assert_allclose(ax.lines[0].get_ydata(), 1e6 * columns["h_min"])
@@ -241,29 +243,25 @@ def test_a_film_of_square_faces_is_drawn_over_the_turns(tmp_path):
     assert len(bar.get_yticks()) == 1
 
 
-def test_a_map_of_the_film_shows_all_of_the_last_turns(tmp_path):
-    archive = write(tmp_path / "seal.h5", whirling(samples=9000, turns=1.0))
-    figure = drawn(film, archive, tmp_path / "chart.png", written=False)
-    (image,) = panel(figure, "Film thickness around").images
+def test_a_map_of_the_film_shows_all_of_the_last_turns(chart):
+    (image,) = panel(chart(film, whirling(samples=9000, turns=1.0)), "Film thickness around").images
     assert image.get_extent()[:2] == pytest.approx((0.0, 1.0)) and image.get_array().shape[1] <= film.MOST_COLUMNS
 
 
-def test_instants_of_a_shaft_at_rest_are_told_in_milliseconds(tmp_path):
+def test_instants_of_a_shaft_at_rest_are_told_in_milliseconds(chart):
     columns = first(whirling(), 50) | {"shaft_angle": np.zeros(50), "shaft_speed": np.zeros(50)}
-    figure = drawn(film, write(tmp_path / "seal.h5", columns, rows=(0, 20, 40)), tmp_path / "chart.png", written=False)
-    assert panel(figure, "Film pressure at").get_title("center").endswith(" ms")
+    assert panel(chart(film, columns, rows=(0, 20, 40)), "Film pressure at").get_title("center").endswith(" ms")
 
 
 @pytest.mark.parametrize(
     "speeds, last, said", [((50.0, 50.0), 1.0, "turns"), ((50.0, 90.0), 1.0, "ms"), ((50.0, 90.0), 3.0, "s")]
 )
-def test_a_run_up_is_drawn_over_time(tmp_path, speeds, last, said):
+def test_a_run_up_is_drawn_over_time(chart, speeds, last, said):
     columns = whirling(samples=900)
     columns["time"] *= last / columns["time"][-1]
     speed = {"time": [0.0, last], "value": list(speeds)}
     columns["shaft_speed"] = np.interp(columns["time"], speed["time"], speed["value"])
-    archive = write(tmp_path / "seal.h5", columns, shaft={"speed": speed})
-    figure = drawn(overview, archive, tmp_path / "chart.png", written=False)
+    figure = chart(overview, columns, shaft={"speed": speed})
     shown = panel(figure, "Smallest film thickness").lines[0].get_xdata()[-1]
     assert any(said in ax.get_xlabel().replace("time, ", "") for ax in figure.axes)
     assert shown == pytest.approx({"turns": shown, "ms": 1e3 * last, "s": last}[said])
@@ -272,22 +270,18 @@ def test_a_run_up_is_drawn_over_time(tmp_path, speeds, last, said):
 # --- rings ------------------------------------------------------------------------------------------------
 
 
-def test_a_ring_under_another_is_seen(tmp_path):
+def test_a_ring_under_another_is_seen(chart):
     columns = whirling(samples=800)
     columns |= {f"stator_tilt_{axis}": columns[f"rotor_tilt_{axis}"] for axis in "xy"}
-    figure = drawn(orbit, write(tmp_path / "seal.h5", columns), tmp_path / "chart.png", written=False)
-    rings = {line.get_label(): line for line in panel(figure, "Tilt of each ring").lines}
+    rings = {line.get_label(): line for line in panel(chart(orbit, columns), "Tilt of each ring").lines}
     assert rings["stator"].get_linewidth() > 3.5 * rings["rotor"].get_linewidth()
 
 
-def test_two_rings_that_stand_still_in_one_place_are_both_seen(tmp_path):
+def test_two_rings_that_stand_still_in_one_place_are_both_seen(chart):
     columns = whirling(samples=800)
     columns |= {f"{ring}_tilt_{axis}": np.full(800, 1e-4) for ring in ("stator", "rotor") for axis in "xy"}
-    figure = drawn(orbit, write(tmp_path / "seal.h5", columns), tmp_path / "chart.png", written=False)
-    ax = panel(figure, "Tilt of each ring")
-    dots, (stator, rotor) = (
-        [line.get_markersize() for line in ax.lines if line.get_marker() == mark] for mark in ("o", "s")
-    )
+    ax = panel(chart(orbit, columns), "Tilt of each ring")
+    dots, (stator, rotor) = ([one.get_markersize() for one in ax.lines if one.get_marker() == mark] for mark in "os")
     assert stator > rotor + 2 and rotor > max(dots) + 2
     assert not any(text.get_text().startswith("whole run: to") for text in ax.get_legend().get_texts())
 
@@ -295,34 +289,33 @@ def test_two_rings_that_stand_still_in_one_place_are_both_seen(tmp_path):
 SUPPORT = {"axial_stiffness": 3e4, "radius": None, "tilt_stiffness": 11.0}
 
 
-def section(tmp_path, **scene):
+def section(chart, **scene):
     """The axes of a sketch."""
-    archive = write(tmp_path / "seal.h5", drop(whirling(samples=40), "tilt"), **scene)
-    (ax,) = drawn(sketch, archive, tmp_path / "chart.png").axes
+    (ax,) = chart(sketch, drop(whirling(samples=40), "tilt"), written=True, **scene).axes
     assert text_trouble(ax.figure) == ([], [])
     return ax
 
 
-def test_a_support_given_by_its_tilt_stiffness_is_sketched(tmp_path):
-    ax = section(tmp_path, stator={"support": SUPPORT}, rotor={})
+def test_a_support_given_by_its_tilt_stiffness_is_sketched(chart):
+    ax = section(chart, stator={"support": SUPPORT}, rotor={})
     assert "support,\n11 N m/rad" in names(ax)
 
 
-def test_what_is_beyond_the_face_is_held_by_its_ring(tmp_path):
+def test_what_is_beyond_the_face_is_held_by_its_ring(chart):
     rings = {"support": SUPPORT | {"radius": 0.036}, "secondary_seal": {"radius": 0.045}}
-    ax = section(tmp_path, stator=rings, rotor={"support": SUPPORT | {"radius": 0.03}})
+    ax = section(chart, stator=rings, rotor={"support": SUPPORT | {"radius": 0.03}})
     boxes = [patch.get_extents().transformed(ax.transData.inverted()) for patch in ax.patches]
     reached = [(box.y0, box.y1) for box in boxes]
     assert any(np.allclose(edges, (40.0, 45.0)) for edges in reached)
     assert any(np.allclose(edges, (30.0, 32.0)) for edges in reached)
 
 
-def test_a_sketch_tells_what_it_does_not_draw(tmp_path):
+def test_a_sketch_tells_what_it_does_not_draw(chart):
     changing = {"time": [0.0, 1.0], "value": [1e5, 11e5]}
     waves = [{"order": 3, "amplitude": 3e-7, "phase": 0.0}]
     profile = {"radius": [0.032, 0.034, 0.04], "depth": [3e-6, 0.0, 0.0]}
     scene = {**FILM, "coning": 0.0, "outer_pressure": changing, "inner_pressure": 1e5, "profile": profile}
-    ax = section(tmp_path, film=scene, stator={"support": SUPPORT, "waviness": waves, "speed": 0.0}, rotor={})
+    ax = section(chart, film=scene, stator={"support": SUPPORT, "waviness": waves, "speed": 0.0}, rotor={})
     assert {"1 to 11 bar abs.", "1 bar abs."} <= set(names(ax)) and "3 waves of 0.3 µm" in ax.get_xlabel()
     # Thickest at the inner radius, and level from 34 mm on.
     gap = ax.patches[0].get_xy()

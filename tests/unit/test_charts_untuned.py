@@ -59,8 +59,7 @@ def test_units_follow_the_size():
 
 @pytest.mark.parametrize("chart", [overview, orbit, film, spectrum], ids=lambda chart: chart.__name__.split(".")[-1])
 def test_tiny_tilts_are_read_in_tiny_units(tmp_path, chart):
-    archive = write(tmp_path / "seal.h5", whirling(tilt=2e-11))
-    figure = drawn(chart, archive, tmp_path / "chart.png")
+    figure = drawn(chart, write(tmp_path / "seal.h5", whirling(tilt=2e-11)), tmp_path / "chart.png")
     must_be_legible(figure)
     words = [text.get_text() for ax in figure.axes for text in (ax.xaxis.label, ax.yaxis.label)]
     assert chart is film or any("nrad" in word for word in words)

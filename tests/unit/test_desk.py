@@ -37,17 +37,6 @@ def test_what_validate_says():
         sealdyn.validate("green-1990")
 
 
-def test_runs_are_compared_shown_and_moved(tmp_path):
-    files = [sealdyn.run(REFERENCE, {"run.turns": 2, "film.clearance": f"{gap} um"}, out=tmp_path / f"{gap}.h5").archive
-             for gap in (8, 9)]  # fmt: skip
-    found = sealdyn.compare(*files)
-    assert [row["key"] for row in found["scene"]] == ["film.clearance"]
-    page = sealdyn.review(files, tmp_path / "page.html")
-    assert page.read_text(encoding="utf-8").count("<svg") >= 2 or page.stat().st_size > 10_000
-    picture = sealdyn.animate(files[0], tmp_path / "moved.png")
-    assert picture.stat().st_size > 1000
-
-
 def test_studies_and_keys_are_listed():
     assert "critical-speed" in sealdyn.list_studies() and all(sealdyn.list_studies().values())
     assert "film" in sealdyn.schema()["properties"] and "lip" in sealdyn.schema(radial=True)["properties"]

@@ -47,12 +47,7 @@ def test_tir_is_read_at_the_outer_diameter():
 @pytest.mark.parametrize(
     "old, new, key, says",
     [
-        (
-            'outer_diameter = "80 mm"',
-            'outer_diameter = "80 mm"\nouter_radius = 1',
-            "film.outer_diameter",
-            "one of the two",
-        ),
+        ("[film]", "[film]\nouter_radius = 1", "film.outer_diameter", "one of the two"),
         ('outer_diameter = "80 mm"', 'outer_diameter = "80 rpm"', "film.outer_diameter", "a unit of speed"),
         ('outer_diameter = "80 mm"', "outer_diameter = [1]", "film.outer_diameter", "a list"),
         ('outer_diameter = "80 mm"', 'outer_diametre = "80 mm"', "film.outer_diametre", "nearest 'outer_diameter'"),

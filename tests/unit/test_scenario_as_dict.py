@@ -70,10 +70,8 @@ def test_so_does_one_with_other_values(path, keys, data):
 @pytest.mark.core
 def test_a_scenario_of_tables_is_read_like_a_file():
     tables = reference().to_dict()
-    tables["film"]["clearance"], tables["shaft"]["speed"] = (
-        np.float64(8e-6),
-        {"time": np.arange(2), "value": [900, 950]},
-    )
+    tables["film"]["clearance"] = np.float64(8e-6)
+    tables["shaft"]["speed"] = {"time": np.arange(2), "value": [900, 950]}
     tables["contact"] = None
     found = Scenario.from_dict(tables, "mine", "Does it hold?")
     assert found.scene.film.clearance == 8e-6 and found.scene.shaft.speed.time == (0, 1)

@@ -47,9 +47,8 @@ def offences(source):
 def sentence(node):
     """Whether an expression is a sentence: by its name, or an exception's text."""
     name = {ast.Name: "id", ast.Attribute: "attr"}.get(type(node))
-    return (name and getattr(node, name) in SENTENCES) or (
-        isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "str"
-    )
+    is_text = isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "str"
+    return (name and getattr(node, name) in SENTENCES) or is_text
 
 
 @pytest.mark.core

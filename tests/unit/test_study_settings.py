@@ -11,16 +11,7 @@ from command import SCENARIOS
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import read_scenario
 from sealdyn.scenario.settings import MOST, axis, si_unit, study_settings, values_in_si
-from sealdyn.studies import (
-    contact_onset,
-    failures,
-    rub,
-    sealing_number,
-    steady_state,
-    study_names,
-    sweep,
-    work_precision,
-)
+from sealdyn.studies import study_names
 from sealdyn.studies._declared import help_text, settings_of
 from sealdyn.studies._declared import schema as whole_schema
 from sealdyn.studies._runner import study_info, study_module
@@ -33,52 +24,51 @@ def scenario():
     return read_scenario(SCENARIO)
 
 
-def settings(module, **flags):
-    name = module.__name__.removesuffix(".study").rpartition(".")[2]
-    return study_settings(scenario(), name, module.Settings, flags)
+def settings(study, **flags):
+    return study_settings(scenario(), study, study_module(study).Settings, flags)
 
 
 @pytest.mark.parametrize(
-    "module, key, words, found",
+    "study, key, words, found",
     [
-        (rub, "whirl_speeds", "5700 rad/s, 60000 rpm", (5700.0, 2000 * math.pi)),
-        (rub, "whirl-speeds", "5700", (5700.0,)),
-        (rub, "whirl_speeds", 5700, (5700.0,)),
-        (rub, "whirl_speeds", ["5700 rad/s", 6000], (5700.0, 6000.0)),
-        (work_precision, "methods", "adams,dop853", ("adams", "dop853")),
-        (work_precision, "methods", "adams", ("adams",)),
-        (contact_onset, "values", "0.1 mrad, 2e-4", ("0.1 mrad", 2e-4)),
-        (steady_state, "approach", "0.9, 0.95", (0.9, 0.95)),
-        (failures, "items", "3, 5", (3, 5)),
-        (failures, "items", 3, (3,)),
-        (sealing_number, "starts", "closed form, open", ("closed form", "open")),
-        (sealing_number, "force_ratios", "1.5, 2", (1.5, 2.0)),
+        ("rub", "whirl_speeds", "5700 rad/s, 60000 rpm", (5700.0, 2000 * math.pi)),
+        ("rub", "whirl-speeds", "5700", (5700.0,)),
+        ("rub", "whirl_speeds", 5700, (5700.0,)),
+        ("rub", "whirl_speeds", ["5700 rad/s", 6000], (5700.0, 6000.0)),
+        ("work_precision", "methods", "adams,dop853", ("adams", "dop853")),
+        ("work_precision", "methods", "adams", ("adams",)),
+        ("contact_onset", "values", "0.1 mrad, 2e-4", ("0.1 mrad", 2e-4)),
+        ("steady_state", "approach", "0.9, 0.95", (0.9, 0.95)),
+        ("failures", "items", "3, 5", (3, 5)),
+        ("failures", "items", 3, (3,)),
+        ("sealing_number", "starts", "closed form, open", ("closed form", "open")),
+        ("sealing_number", "force_ratios", "1.5, 2", (1.5, 2.0)),
     ],
 )
-def test_a_list_may_be_one_flag(module, key, words, found):
-    read = getattr(settings(module, **{key: words}), key.replace("-", "_"))
+def test_a_list_may_be_one_flag(study, key, words, found):
+    read = getattr(settings(study, **{key: words}), key.replace("-", "_"))
     assert read == pytest.approx(found) if all(isinstance(v, float) for v in found) else read == found
 
 
 def test_words_with_commas_of_their_own_stay_whole():
-    read = settings(sweep, vary="rotor.runout=1 urad,2 urad", outputs="film,leakage")
+    read = settings("sweep", vary="rotor.runout=1 urad,2 urad", outputs="film,leakage")
     assert read.vary == "rotor.runout=1 urad,2 urad" and read.outputs == "film,leakage"
-    assert settings(rub, values="1 mrad:2 mrad:3").values == "1 mrad:2 mrad:3"
+    assert settings("rub", values="1 mrad:2 mrad:3").values == "1 mrad:2 mrad:3"
 
 
 @pytest.mark.parametrize(
-    "module, key, words, told",
+    "study, key, words, told",
     [
-        (rub, "whirl_speeds", "5700 rad/s, 6000 kg", ["study.rub] whirl_speeds", "6000 kg", "speed of rotation"]),
-        (rub, "whirl_speeds", "5700 rad/s,, 6000", ["study.rub] whirl_speeds", "speed of rotation"]),
-        (failures, "items", "3, many", ["study.failures] items", "many", "integer"]),
-        (steady_state, "approach", "0.9, near", ["study.steady_state] approach", "near", "number"]),
-        (rub, "whirl_speds", "1, 2", ["study.rub] whirl_speds", "nearest 'whirl_speeds'"]),
+        ("rub", "whirl_speeds", "5700 rad/s, 6000 kg", ["study.rub] whirl_speeds", "6000 kg", "speed of rotation"]),
+        ("rub", "whirl_speeds", "5700 rad/s,, 6000", ["study.rub] whirl_speeds", "speed of rotation"]),
+        ("failures", "items", "3, many", ["study.failures] items", "many", "integer"]),
+        ("steady_state", "approach", "0.9, near", ["study.steady_state] approach", "near", "number"]),
+        ("rub", "whirl_speds", "1, 2", ["study.rub] whirl_speds", "nearest 'whirl_speeds'"]),
     ],
 )
-def test_a_bad_entry_is_one_line(module, key, words, told):
+def test_a_bad_entry_is_one_line(study, key, words, told):
     with pytest.raises(ScenarioError) as refused:
-        settings(module, **{key: words})
+        settings(study, **{key: words})
     said = str(refused.value)
     assert "\n" not in said and all(part in said for part in told), said
 
@@ -107,9 +97,9 @@ def test_values_come_in_si(words, unit, found):
 
 @pytest.mark.parametrize("sign", [1, -1])
 def test_whole_numbers_are_of_a_size_that_can_be_counted(sign):
-    assert settings(rub, ramp=sign * MOST).ramp == sign * MOST
+    assert settings("rub", ramp=sign * MOST).ramp == sign * MOST
     with pytest.raises(ScenarioError) as refused:
-        settings(rub, ramp=sign * (MOST + 1))
+        settings("rub", ramp=sign * (MOST + 1))
     assert refused.value.key == "study.rub.ramp" and str(sign * (MOST + 1)) in refused.value.found
 
 

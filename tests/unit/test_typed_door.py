@@ -50,13 +50,8 @@ def test_a_type_checker_agrees_and_finds_what_is_wrong(tmp_path):
     # and asked of these files alone.
     words = [sys.executable, "-m", "mypy", "--config-file=", "--strict", "--follow-imports=silent"]
     place = os.environ | {"MYPYPATH": str(Path(sealdyn.__file__).parents[1])}
-    done = subprocess.run(
-        [*words, "--cache-dir", tmp_path / "cache", SCRIPT, *own, wrong],
-        capture_output=True,
-        text=True,
-        cwd=SCRIPT.parent,
-        env=place,
-    )
+    words += ["--cache-dir", tmp_path / "cache", SCRIPT, *own, wrong]
+    done = subprocess.run(words, capture_output=True, text=True, cwd=SCRIPT.parent, env=place)
     errors = re.findall(r"^(.*?)(\w+\.py):(\d+): error: ", done.stdout, re.MULTILINE)
     found = {int(line) for _, name, line in errors if name == wrong.name}
     assert len(own) == 3 and found == set(range(2, WRONG.count("\n") + 1)), done.stdout

@@ -16,9 +16,10 @@ from sealdyn.scene.excitation import AxialVibration, Housing
 from sealdyn.scene.forces import Contact
 from sealdyn.scene.patterns import Waviness
 from sealdyn.scene.rings import AxialRunout, Support
-from sealdyn.scene.scene import SceneError, counterpart, part, tables_at_end, with_values, without
+from sealdyn.scene.scene import SceneError, counterpart, part, tables_at_end, with_values
 
 TEXT = (SCENARIOS / "fms_reference.toml").read_text()
+TONE = '\n[[housing.axial]]\nfrequency = "50 Hz"\ndisplacement = "1 um"\n'
 RAMP = PiecewiseLinear((0.0, 0.5), (100.0, 900.0))
 ROUGH = Contact(roughness=2e-7, compressive_strength=3e8)
 SHAKEN = replace(fms(), housing=Housing(axial=[AxialVibration(50.0, 1e-6), AxialVibration(60.0, 2e-6)]))
@@ -57,10 +58,6 @@ def test_a_value_takes_its_alternatives_away():
     assert (again.radius, again.tilt_damping) == (None, 0.1)
     shaken = with_values(SHAKEN, {"housing.axial.0.acceleration": 3.0}).housing.axial
     assert (shaken[0].displacement, shaken[0].acceleration, shaken[1]) == (None, 3.0, SHAKEN.housing.axial[1])
-
-
-def test_contact_goes_and_the_rest_stays():
-    assert without(replace(fmr(), contact=ROUGH), ["contact"]) == fmr()
 
 
 def test_tables_end():
@@ -119,9 +116,7 @@ def test_values_are_those_of_overrides(values):
 )  # fmt: skip
 def test_errors_are_those_of_overrides(values):
     """The same line, but that structural ones print the override as it was given."""
-    text = (
-        TEXT + '\n[[housing.axial]]\nfrequency = "50 Hz"\ndisplacement = "1 um"\n' if "first" in str(values) else TEXT
-    )
+    text = TEXT + TONE if "first" in str(values) else TEXT
     with pytest.raises(ScenarioError) as written:
         scenario(*overrides_of(values), text=text)
     with pytest.raises(ScenarioError) as changed:
@@ -141,9 +136,7 @@ def test_total_indicator_reading_follows_the_outer_radius():
 
 @pytest.mark.core
 def test_what_was_read_is_not_changed_by_what_is_made_of_it():
-    read = scenario(
-        text=TEXT + '\n[[housing.axial]]\nfrequency = "50 Hz"\ndisplacement = "1 um"\n[study.rub]\ndown = true\n'
-    )
+    read = scenario(text=f"{TEXT}{TONE}[study.rub]\ndown = true\n")
     kept = pickle.dumps(read)
     changed = reader.with_values(read, {"housing.axial.0.frequency": 70.0, "study.rub.down": False})
     assert changed.scene.housing.axial[0].frequency == 70.0 and changed.study["rub"]["down"] is False
