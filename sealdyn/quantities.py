@@ -46,6 +46,7 @@ SIZES = {
     "N m s/rad": ((0.0, "N m s/rad", 1.0), (1e4, "kN m s/rad", 1e-3), (1e6, "MN m s/rad", 1e-6)),
     "m/s": ((0.0, "um/s", 1e6), (1e-3, "mm/s", 1e3), (1.0, "m/s", 1.0)),
     "Pa*m/s": ((0.0, "kPa m/s", 1e-3), (1e4, "MPa m/s", 1e-6)),
+    "B": ((0.0, "MB", 1e-6), (1e9, "GB", 1e-9)),
 }
 
 # SI unit -> unit of a series of any size: what archives say.
@@ -204,15 +205,16 @@ def written_alone(unit: str, shown: str) -> bool:
     return shown in WRITTEN.get(unit, {})
 
 
-def number(value: float | None, factor: float = 1.0, digits: int = 4) -> str:
-    """A number of so many digits, large ones up to seven figures without an exponent; "-" of None."""
+def number(value: float | None, factor: float = 1.0, digits: int = 4, sign: str = "") -> str:
+    """A number of so many digits, large ones up to seven figures without an exponent, also a positive one with its
+    sign where `sign` is "+"; "-" of None."""
     if value is None or (isinstance(value, float) and math.isnan(value)):
         return "-"
-    words = f"{value * factor:.{digits}g}"
-    return f"{float(words):.0f}" if words.endswith(("e+03", "e+04", "e+05", "e+06")) else words
+    words = f"{value * factor:{sign}.{digits}g}"
+    return f"{float(words):{sign}.0f}" if words.endswith(("e+03", "e+04", "e+05", "e+06")) else words
 
 
-def in_words(name: str, value: float | None, digits: int = 4) -> str:
-    """A value (SI) with its unit: "4.898 mrad", "9549 rpm"."""
+def in_words(name: str, value: float | None, digits: int = 4, sign: str = "") -> str:
+    """A value (SI) with its unit: "4.898 mrad", "9549 rpm"; `sign` as in `number`."""
     unit, factor = shown_in(name, [value])
-    return f"{number(value, factor, digits)} {unit}".strip()
+    return f"{number(value, factor, digits, sign)} {unit}".strip()

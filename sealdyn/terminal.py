@@ -15,6 +15,7 @@ from threading import Lock, Timer
 from time import monotonic
 
 from .numerics.interruption import CODE, Interruption, deafen, stop_children
+from .quantities import in_words
 from .status import Status
 from .units import cut, printable
 
@@ -303,7 +304,7 @@ def _refuse_little_memory():
     from .kernel_cache import kept_kernels
 
     needed = MEMORY if kept_kernels() else COMPILING
-    line = f"memory is limited to {allowed / 1e6:.0f} MB (ulimit -v): at least {needed / 1e6:.0f} are needed"
+    line = f"memory is limited to {in_words('B', allowed)} (ulimit -v): at least {in_words('B', needed)} are needed"
     if allowed < needed and sys.argv[1:2] and sys.argv[1] in COMPUTING:
         raise Stop(Status.FAILED, f"{line} to compute")
     if allowed < needed:

@@ -12,6 +12,7 @@ import numpy as np
 from ..dynamics.intervals import largest_value
 from ..dynamics.model import Model
 from ..numerics.piecewise_linear import initially, points
+from ..quantities import in_words
 from ..scenario.reader import Scenario
 from ..scene.application import Application
 from ..scene.fluid import viscosity_of
@@ -57,7 +58,9 @@ def findings(scenario: Scenario, model: Model) -> list[dict]:
 def _sliding_speed(seal: Seal, limit) -> Finding:
     """Pass up to 6096 m/min; more "is possible with proper cooling": a note."""
     speed = seal.sliding_speed
-    sentence = f"sliding speed {60 * speed:.4g} m/min at the mean diameter, face seals go up to {60 * limit:.0f} m/min"
+    sentence = (
+        f"sliding speed {in_words('m/s', speed)} at the mean diameter, face seals go up to {in_words('m/s', limit)}"
+    )
     if speed > limit:
         sentence += ": more is possible with proper cooling"
     return limit_finding(sentence, speed, most=limit, beyond=Verdict.NOTE)
@@ -79,11 +82,11 @@ def _runout(seal: Seal, limit) -> Finding:
         return missing_keys("application.shaft_runout")
     speed = 60 * seal.sliding_speed
     most = next((allowed for fastest, allowed in limit if speed <= fastest), None)
-    sentence = f"shaft runout {1e3 * runout:.4g} mm TIR at {speed:.4g} m/min"
+    sentence = f"shaft runout {in_words('m', runout)} TIR at {in_words('m/s', seal.sliding_speed)}"
     if most is not None:
-        return limit_finding(f"{sentence}, {1e3 * most:.4g} mm allowed", runout, most=most)
+        return limit_finding(f"{sentence}, {in_words('m', most)} allowed", runout, most=most)
     last, most = limit[-1]
-    sentence += f", beyond the table, which ends with {1e3 * most:.4g} mm at {last:.0f} m/min"
+    sentence += f", beyond the table, which ends with {in_words('m', most)} at {in_words('m/s', last / 60)}"
     if runout > most:
         return limit_finding(sentence, runout, most=most)
     return limit_finding(sentence, runout, most=0.0, beyond=Verdict.NOTE)
@@ -99,7 +102,7 @@ def _misalignment(seal: Seal, limit) -> Finding:
     worst = max(tilts, key=tilts.get)
     if tilts[worst] == 0.0:
         return missing_keys(*tilts)
-    sentence = f"{worst} tilts a face by {1e6 * tilts[worst]:.4g} urad, up to {1e6 * limit:.0f} urad are usual"
+    sentence = f"{worst} tilts a face by {in_words('rad', tilts[worst])}, up to {in_words('rad', limit)} are usual"
     return limit_finding(sentence, tilts[worst], most=limit)
 
 
@@ -110,12 +113,12 @@ def _face_width(seal: Seal, limit) -> Finding:
     if bore is None:
         return missing_keys("application.bore")
     bores, widths = limit
-    sentence = f"face {1e3 * width:.4g} mm wide at a bore of {1e3 * bore:.4g} mm"
+    sentence = f"face {in_words('m', width)} wide at a bore of {in_words('m', bore)}"
     if not bores[0] <= bore <= bores[-1]:
-        sentence += f", beyond the table ({1e3 * bores[0]:g} to {1e3 * bores[-1]:g} mm)"
+        sentence += f", beyond the table ({in_words('m', bores[0])} to {in_words('m', bores[-1])})"
         return note(sentence, width, usual=None)
     usual = float(np.interp(bore, bores, widths))
-    sentence += f"; {1e3 * usual:.4g} mm is usual"
+    sentence += f"; {in_words('m', usual)} is usual"
     if width > (1 + NEAR) * usual:
         sentence += ": a wider face makes more heat"
     return limit_finding(sentence, width, (1 - NEAR) * usual, (1 + NEAR) * usual, beyond=Verdict.NOTE, usual=usual)
@@ -127,7 +130,9 @@ def _flatness(seal: Seal, limit) -> Finding:
     worst = max(heights, key=heights.get)
     if heights[worst] == 0.0:
         return missing_keys("stator.waviness", "rotor.waviness")
-    sentence = f"the {worst}'s face is wavy by {1e6 * heights[worst]:.4g} um, faces are flat within {1e6 * limit:g} um"
+    sentence = (
+        f"the {worst}'s face is wavy by {in_words('m', heights[worst])}, faces are flat within {in_words('m', limit)}"
+    )
     return limit_finding(sentence, heights[worst], most=limit)
 
 
@@ -144,8 +149,8 @@ def _finish(seal: Seal, limit) -> Finding:
         return missing_keys("contact.roughness")
     roughness, (hard, nose) = seal.scene.contact.roughness, limit
     most, with_nose = math.sqrt(2) * hard, math.hypot(hard, nose)
-    sentence = (f"both faces are rough by {1e6 * roughness:.4g} um together; two of 0.1 um have {1e6 * most:.2g} um, "
-                f"with a carbon nose up to {1e6 * with_nose:.2g} um")  # fmt: skip
+    sentence = f"both faces are rough by {in_words('m', roughness)} together; two of 0.1 um have "
+    sentence += f"{in_words('m', most, 2)}, with a carbon nose up to {in_words('m', with_nose, 2)}"
     beyond = Verdict.NOTE if roughness <= with_nose else Verdict.FAIL
     return limit_finding(sentence, roughness, most=most, beyond=beyond)
 
@@ -153,7 +158,8 @@ def _finish(seal: Seal, limit) -> Finding:
 def _film_thickness(seal: Seal, limit) -> Finding:
     """Pass from 1.25 to 2.5 um at the mean radius of the aligned faces; else a note: typical is no limit."""
     film = seal.film_thickness
-    sentence = f"film {1e6 * film:.4g} um at the mean radius, typical are {1e6 * limit[0]:g} to {1e6 * limit[1]:g} um"
+    least, most = (in_words("m", value) for value in limit)
+    sentence = f"film {in_words('m', film)} at the mean radius, typical are {least} to {most}"
     return limit_finding(sentence, film, *limit, beyond=Verdict.NOTE)
 
 
@@ -168,8 +174,8 @@ def _leakage(seal: Seal, limit) -> Finding:
     leakage, most = seal.leakage, most if own is None else own
     goal = min(goal, most)
     whose = "the guide's" if own is None else "this seal's"
-    sentence = f"aligned faces leak {leakage / CC_PER_H:.4g} cc/h at the start, {whose} limit is "
-    sentence += f"{most / CC_PER_H:.4g} cc/h, the goal {goal / CC_PER_H:.4g} cc/h"
+    sentence = f"aligned faces leak {in_words('leakage', leakage)} at the start, {whose} limit is "
+    sentence += f"{in_words('leakage', most)}, the goal {in_words('leakage', goal)}"
     if leakage > most:
         return limit_finding(sentence, leakage, most=most)
     return limit_finding(sentence, leakage, most=goal, beyond=Verdict.NOTE)
@@ -198,15 +204,15 @@ def _heat(seal: Seal, limit) -> Finding:
     speed, film = seal.sliding_speed, seal.film_thickness
     if film <= 0.0:
         # Rough faces may carry a cone that closes their mean planes.
-        return other_seals(f"the mean film is {1e6 * film:.4g} um: the asperities carry the faces")
+        return other_seals(f"the mean film is {in_words('m', film)}: the asperities carry the faces")
     full = initially(viscosity_of(seal.model.scene.film)) * seal.face_area * speed**2 / film
     dry = [f * seal.face_load * speed for f in limit]
     rough = seal.asperity_heat
-    sentence = f"heat {full:.4g} W of a full film of {1e6 * film:.4g} um"
+    sentence = f"heat {full:.4g} W of a full film of {in_words('m', film)}"
     sentence += f" and {rough:.4g} W of the asperities that touch," if rough > 0.0 else ""
-    sentence += f" at {60 * speed:.4g} m/min; faces that run dry would make {dry[0]:.4g} to {dry[1]:.4g} W"
+    sentence += f" at {in_words('m/s', speed)}; faces that run dry would make {dry[0]:.4g} to {dry[1]:.4g} W"
     if full > dry[1] > 0.0:
-        sentence += f": more than without it, {1e-4 * full / seal.face_area:.4g} W/cm^2 of face"
+        sentence += f": more than without it, {in_words('heat_flux', full / seal.face_area)} of face"
         return limit_finding(sentence, full, most=dry[1], dry=dry, asperities=rough)
     return note(sentence, full, dry=dry, asperities=rough)
 
@@ -215,7 +221,7 @@ def _pressure_velocity(seal: Seal, limit) -> Finding:
     """A note: closing force above the lower pressure, over the face, times the highest sliding speed."""
     pv = seal.face_load / seal.face_area * seal.sliding_speed
     sentence = (
-        f"PV {pv / 1e6:.4g} MPa m/s, if the faces carried all of the closing force: to be held against the limit of "
+        f"PV {in_words('Pa*m/s', pv)}, if the faces carried all of the closing force: to be held against the limit of "
         "their materials"
     )
     return note(sentence, pv)
@@ -229,8 +235,8 @@ def _face_pressure(seal: Seal, limit) -> Finding:
     if seal.spring_force is None:
         return missing_keys("closing.spring_force")
     (least, most), pressure = limit, seal.spring_force / seal.face_area
-    sentence = f"the spring presses the faces with {pressure / 1e4:.4g} N/cm^2"
-    sentence += f", usual are {least / 1e4:g} to {most / 1e4:g}"
+    sentence = f"the spring presses the faces with {in_words('Pa', pressure)}"
+    sentence += f", usual are {in_words('Pa', least)} to {in_words('Pa', most)}"
     return limit_finding(sentence, pressure, least, most)
 
 
@@ -242,8 +248,8 @@ def _balance(seal: Seal, limit) -> Finding:
     most, kind = (limit[0], "unbalanced") if balance >= 1.0 else (limit[1], "balanced")
     why = "" if seal.scene.closing.balance_ratio is not None else ", as the clearance asks for"
     sentence = (
-        f"{pressure / 1e4:.4g} N/cm^2 sealed by a seal of balance {balance:.4g}{why}; {kind} seals take up to "
-        f"{most / 1e4:.4g} N/cm^2"
+        f"{in_words('Pa', pressure)} sealed by a seal of balance {balance:.4g}{why}; {kind} seals take up to "
+        f"{in_words('Pa', most)}"
     )
     return limit_finding(sentence, pressure, most=most, balance=balance)
 
@@ -272,7 +278,7 @@ def _axial_travel(seal: Seal, limit) -> Finding:
     travel, kind = seal.application.axial_displacement, seal.application.spring
     if travel is None:
         return missing_keys("application.axial_displacement")
-    sentence = f"axial travel {1e3 * travel:.4g} mm"
+    sentence = f"axial travel {in_words('m', travel)}"
     least_of_all, most_of_all = min(limit.values()), max(limit.values())
     if kind is None and least_of_all < travel <= most_of_all:
         return missing_keys("application.spring")
@@ -280,7 +286,7 @@ def _axial_travel(seal: Seal, limit) -> Finding:
         most, words = least_of_all if travel <= least_of_all else most_of_all, "springs take"
     else:
         most, words = limit[kind], SPRINGS[kind]
-    sentence += f", {words} up to {1e3 * most:.4g} mm"
+    sentence += f", {words} up to {in_words('m', most)}"
     if travel > most_of_all:
         sentence += ": beyond it a seal that rides on the shaft"
     return limit_finding(sentence, travel, most=most)
@@ -342,7 +348,7 @@ def _life(seal: Seal, limit) -> Finding:
     life = seal.application.life
     if life is None:
         return missing_keys("application.life")
-    sentence = f"asked for {life / 3600:.4g} h between overhauls, seals of the guide for {limit / 3600:g} h"
+    sentence = f"asked for {in_words('time', life)} between overhauls, seals of the guide for {in_words('time', limit)}"
     return limit_finding(sentence, life, most=limit, beyond=Verdict.NOTE)
 
 

@@ -17,6 +17,7 @@ import numpy as np
 from ..dynamics.imposed_motion import rest_state
 from ..dynamics.intervals import largest_value
 from ..dynamics.model import Model
+from ..quantities import in_words
 from ..radial_seals.followers import followers_of
 from ..scenario.reader import Scenario
 from ..scene.application import RadialApplication
@@ -140,9 +141,9 @@ def seal_type_finding(duty: Duty, own: str) -> Finding:
 
 
 def _read(what: str, value: float, most: float) -> str:
-    """A number and its limit in the guide's own metric units."""
-    factor, unit = {"speed": (60.0, "m/min"), "pressure": (1e-4, "N/cm^2")}.get(what, (1e3, "mm"))
-    return f"{factor * value:.4g} beyond {factor * most:.4g} {unit}"
+    """A number and its limit."""
+    unit = {"speed": "m/s", "pressure": "Pa"}.get(what, "m")
+    return f"{in_words(unit, value)} beyond {in_words(unit, most)}"
 
 
 def findings(scenario: Scenario) -> list[dict]:
@@ -162,17 +163,17 @@ def _lip_speed(scene, limit) -> Finding:
     total, speed = scene.shaft.eccentricity + scene.shaft.offset, surface_speed(scene)
     # Beyond the table its last speed stands: nothing is extrapolated.
     allowed = float(np.interp(total, eccentricities[::-1], speeds[::-1]))
-    sentence = f"{60 * speed:.4g} m/min with {1e3 * total:.3g} mm of offset and eccentricity"
-    sentence += f"; experience allows {60 * allowed:.4g} m/min"
+    sentence = f"{in_words('m/s', speed)} with {in_words('m', total)} of offset and eccentricity"
+    sentence += f"; experience allows {in_words('m/s', allowed)}"
     if total > eccentricities[0]:
-        return limit_finding(f"{sentence}; the table ends at {1e3 * eccentricities[0]:.3g} mm", speed, most=0.0)
+        return limit_finding(f"{sentence}; the table ends at {in_words('m', eccentricities[0])}", speed, most=0.0)
     return limit_finding(sentence, speed, most=allowed)
 
 
 def _lip_eccentricity(scene, limit) -> Finding:
     total = scene.shaft.eccentricity + scene.shaft.offset
     return limit_finding(
-        f"{1e3 * total:.3g} mm of offset and eccentricity, below {1e3 * limit:.3g} mm", total, most=limit
+        f"{in_words('m', total)} of offset and eccentricity, below {in_words('m', limit)}", total, most=limit
     )
 
 
@@ -193,9 +194,9 @@ def _lip_pressure(scene, limit) -> Finding:
     pressure, speed = scene.lip.pressure_difference, surface_speed(scene)
     allowed = float(np.interp(pressure, pressures, speeds))
     if pressure > pressures[-1]:
-        sentence = f"{1e-5 * pressure:.3g} bar; the table ends at 5 psi, 0.345 bar"
+        sentence = f"{in_words('Pa', pressure)}; the table ends at {in_words('Pa', pressures[-1])}"
         return limit_finding(sentence, pressure, most=float(pressures[-1]), unit="Pa")
-    sentence = f"{60 * speed:.4g} m/min at {1e-5 * pressure:.3g} bar; experience allows {60 * allowed:.4g} m/min"
+    sentence = f"{in_words('m/s', speed)} at {in_words('Pa', pressure)}; experience allows {in_words('m/s', allowed)}"
     return limit_finding(sentence, speed, most=allowed)
 
 
@@ -203,15 +204,19 @@ def _segment_speed(scene, limit) -> Finding:
     runouts, speeds = limit
     runout, speed = 2.0 * scene.shaft.eccentricity, surface_speed(scene)
     allowed = float(np.interp(runout, runouts, speeds))
-    sentence = f"{60 * speed:.4g} m/min with {1e3 * runout:.3g} mm TIR; experience allows {60 * allowed:.4g} m/min"
+    sentence = (
+        f"{in_words('m/s', speed)} with {in_words('m', runout)} TIR; experience allows {in_words('m/s', allowed)}"
+    )
     if runout > runouts[-1]:
-        return limit_finding(sentence + "; the table ends at 0.508 mm", runout, most=float(runouts[-1]), unit="m")
+        return limit_finding(
+            sentence + f"; the table ends at {in_words('m', runouts[-1])}", runout, most=float(runouts[-1]), unit="m"
+        )
     return limit_finding(sentence, speed, most=allowed)
 
 
 def _segment_runout(scene, limit) -> Finding:
     runout, most = 2.0 * scene.shaft.eccentricity, limit * 2.0 * scene.shaft.radius
-    sentence = f"{1e3 * runout:.3g} mm TIR, {limit:g} of the diameter are {1e3 * most:.3g} mm"
+    sentence = f"{in_words('m', runout)} TIR, {limit:g} of the diameter are {in_words('m', most)}"
     return limit_finding(sentence, runout, most=most, beyond=Verdict.NOTE)
 
 
@@ -223,7 +228,7 @@ def _axial_load(scene, limit) -> Finding:
 
 def _segment_pressure(scene, limit) -> Finding:
     pressure = scene.circumferential.pressure_difference
-    return limit_finding(f"{1e-4 * pressure:.3g} N/cm^2, below {1e-4 * limit:.3g} (1 psi)", pressure, most=limit)
+    return limit_finding(f"{in_words('Pa', pressure)}, below {in_words('Pa', limit)} (1 psi)", pressure, most=limit)
 
 
 def _hang_up(scene, limit) -> Finding:
@@ -295,12 +300,14 @@ def film_stiffness(seal: Seal, limit) -> Finding:
     inner, *_, outer = (gap for _, gap in sorted(seal.model.aligned_gaps()))
     leaving, entering = (inner, outer) if seal.model.closing.outer_is_high else (outer, inner)
     along = "narrows" if leaving < entering else "opens" if leaving > entering else "is even"
-    sentence = f"axial stiffness {1e-6 * stiffness:.4g} N/um at {1e6 * seal.model.clearance:.4g} um, of a gap that "
-    sentence += f"{along} along the flow" + ("" if stiffness > limit else ": it holds no clearance by itself")
+    sentence = f"axial stiffness {in_words('axial_stiffness', stiffness)} at {in_words('m', seal.model.clearance)}, "
+    sentence += f"of a gap that {along} along the flow" + (
+        "" if stiffness > limit else ": it holds no clearance by itself"
+    )
     own = sum(ring.support.axial_stiffness for ring in (seal.scene.stator, seal.scene.rotor) if ring.support)
     beyond = Verdict.NOTE if stiffness + own > limit else Verdict.FAIL
     if beyond == Verdict.NOTE and stiffness <= limit:
-        sentence += f", the supports' {1e-6 * own:.4g} N/um do"
+        sentence += f", the supports' {in_words('axial_stiffness', own)} do"
     return limit_finding(sentence, stiffness, least=limit, beyond=beyond, supports=own)
 
 

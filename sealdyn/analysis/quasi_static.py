@@ -30,6 +30,7 @@ from ..faces.geometry import (
     VISCOSITY,
 )
 from ..films.radial import floored as radial
+from ..quantities import in_words
 from ..scene.film import Film
 from ..solvers.contract import Counts, SolverFailure, tolerance_for
 from ..solvers.methods import METHODS
@@ -297,7 +298,7 @@ def quasi_static(
         return "settled" if np.max(np.abs(rate)) < SETTLED * ring.shaft_speed * film[0] else ""
 
     def sentence(verdict, said, time, film):
-        where = f"at t = {time:.4g} s, h0 = {film[0] * 1e6:.4g} um, h1/h0 = {film[1] / film[0]:.3g}"
+        where = f"at t = {time:.4g} s, h0 = {in_words('h_min', film[0])}, h1/h0 = {film[1] / film[0]:.3g}"
         if verdict == "settled":
             return "settled", f"settled {where}"
         if said == NO_RATES or (said and balance.none_ahead(film)):
@@ -319,7 +320,7 @@ def guided(
     balance = _Balance(ring or Ring(), force_ratio, start, "cosine")
 
     def sentence(verdict, said, time, film):
-        where = f"at t = {time:.4g} s, h0 = {film[0] * 1e6:.4g} um, h1/h0 = {film[1] / film[0]:.3g}"
+        where = f"at t = {time:.4g} s, h0 = {in_words('h_min', film[0])}, h1/h0 = {film[1] / film[0]:.3g}"
         if said:
             return Status.FAILED, f"{said} ({where})"
         return (

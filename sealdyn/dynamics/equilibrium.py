@@ -14,7 +14,7 @@ from ..faces.geometry import (
     SPIN_DIFFERENCE,
 )
 from ..numerics.piecewise_linear import PiecewiseLinear, initially
-from ..quantities import resolved
+from ..quantities import in_words, resolved
 from ..scene.film import aligned_gaps, coned
 from ..scene.forces import contact_thresholds, load_of
 from ..scene.patterns import grooves_of, waves_of
@@ -291,5 +291,5 @@ def _no_equilibrium(scene, opening_force, law, inner, outer, roots):
         expected = f"a film that narrows along its flow, as film.coning {narrows} 0 makes it ({where}); {this}"
     found = f"no equilibrium clearance (closing force {closing:.6g} N)"
     if roots:
-        found = f"only unstable equilibria (at {', '.join(f'{r.clearance * 1e6:.3g} um' for r in roots)})"
+        found = f"only unstable equilibria (at {', '.join(in_words('h_min', r.clearance, 3) for r in roots)})"
     return "closing.balance_ratio", found, expected

@@ -14,6 +14,7 @@ from ..faces.film_thickness import highest_orders
 from ..faces.geometry import COLLAPSE, GX, GY, INNER_RADIUS, OUTER_RADIUS, TOUCH, WAVES, smallest_gap
 from ..numerics.hermite import NODES, fit, value
 from ..numerics.kernel import inner_kernel, outer_kernel
+from ..quantities import in_words
 from ..scene.forces import film_in_words, limit_in_words
 from ..solvers.contract import Cause, Stop
 from .equations import LEG_AT, kinematics
@@ -427,7 +428,7 @@ class ExtremaTracker:
             at = "at the radius"
         return (
             f"{self._cause()} at t = {self.segment.time + tau:.6g} s: {film_in_words(record[H])} "
-            f"({limit_in_words(face[COLLAPSE])}) {at} {record[H_RADIUS] * 1e3:.4g} mm, "
+            f"({limit_in_words(face[COLLAPSE])}) {at} {in_words('radius', record[H_RADIUS])}, "
             f"theta = {math.degrees(record[H_THETA]):.1f} deg.  Try less misalignment or runout, more coning or "
             f"clearance, a stiffer or more damped support{other}."
         )

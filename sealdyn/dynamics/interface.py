@@ -28,6 +28,7 @@ from ..faces.geometry import (
 )
 from ..films import film_named, film_of
 from ..numerics.piecewise_linear import initially
+from ..quantities import in_words
 from ..scene.excitation import Housing
 from ..scene.film import Coefficients, cells_of, coned
 from ..scene.patterns import grooves_of, waves_of
@@ -419,7 +420,7 @@ def _refuse_many(table, wanted):
     count = cells * angles * min(sectors, 3)
     times = count / MEASURED
     if count > MOST_SOUGHT:
-        cost = f"some {SECONDS * times**2:.0f} s and {BYTES * times / 1e9:.1f} GB to make ready"
+        cost = f"some {in_words('time', SECONDS * times**2, 2)} and {in_words('B', BYTES * times, 2)} to make ready"
         found = f"{wanted:g}, for which the next cells are {cells} x {angles * sectors}: {cost}"
         expected = "a looser accuracy of the cells, or cells_r and cells_theta, which are taken as they are"
         raise SceneError("film.reynolds.grid_accuracy", found, expected)

@@ -19,6 +19,7 @@ import numpy as np
 from ..faces.geometry import TOUCH
 from ..numerics.hermite import LOBATTO_ERROR, LOBATTO_ORDER, NODES, fit, points, sample
 from ..numerics.kernel import inner_kernel, outer_kernel
+from ..quantities import in_words
 from .extrema import MOST_SCAN, PER_RADIAN, SCAN, crossing_time, locate_minimum, measures_at, scan_step
 from .native import thinnest_value
 from .signals import TALLIED, signals
@@ -67,9 +68,9 @@ def contact_event(row, level: float) -> dict:
     kind = "contact" if row[KIND] else "grazing"
     depth = level - row[DEPTH_H]
     text = (
-        f"faces touch, {depth * 1e6:.3g} um deep"
+        f"faces touch, {in_words('depth', depth, 3)} deep"
         if row[KIND]
-        else f"{abs(depth) * 1e6:.2g} um {'below' if depth > 0 else 'above'} touch: undecided at this accuracy"
+        else f"{in_words('depth', abs(depth), 2)} {'below' if depth > 0 else 'above'} touch: undecided at this accuracy"
     )
     return {"kind": kind, "time": float(row[TOUCHED]), "value": float(row[DEPTH_H]), "text": text,
             "lift_off": float(row[LIFTED]), "deepest": float(row[DEEPEST]), "theta": float(row[DEPTH_THETA]),

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..dynamics.intervals import largest_value
 from ..numerics.piecewise_linear import points
+from ..quantities import in_words
 from ..scene.radial import Lip, RadialScene
 
 
@@ -156,7 +157,7 @@ def closed_form_sentences(followers, shaft) -> list[str]:
         f"preload {followers.preload * per:.4g} N/m; {needed * per:.4g} N/m are needed to ride all the way round"
     ]
     if math.isfinite(largest):
-        sentences.append(f"without lobes it rides on eccentricities up to {1e3 * largest:.4g} mm at this speed")
+        sentences.append(f"without lobes it rides on eccentricities up to {in_words('m', largest)} at this speed")
     if hangs_up(followers):
         sentences.append("the friction of the flange is as large as the preload: segments hang up")
     return sentences

@@ -9,7 +9,7 @@ from scipy.optimize import minimize_scalar
 
 from ..archive import Fields, Series
 from ..dynamics.intervals import constant_and_slope, modulo_turn
-from ..quantities import everyday, quantity
+from ..quantities import everyday, in_words, quantity
 from ..solvers.contract import Status
 from ..solvers.run_error import missing_energy
 from .equations import HELD, RIDING
@@ -258,11 +258,11 @@ def _warnings(summary, scene) -> list[str]:
     said, whole, settled = [], summary["whole"], summary["settled"]
     if summary["contact"]["lift"]:
         lost = (f"contact is lost: first at t = {summary['contact']['first_lift']:.4g} s, in the whole run by up to "
-                f"{1e6 * whole['largest_gap']:.4g} um")  # fmt: skip
+                f"{in_words('largest_gap', whole['largest_gap'])}")  # fmt: skip
         if np.isfinite(settled["contact_share"]):
-            share = 100.0 * (1.0 - settled["contact_share"])
-            lost += (f"; settled, a follower is off the shaft {share:.3g} % of the time, by up to "
-                     f"{1e6 * settled['largest_gap']:.4g} um")  # fmt: skip
+            share = 1.0 - settled["contact_share"]
+            lost += (f"; settled, a follower is off the shaft {in_words('share', share, 3)} of the time, by up to "
+                     f"{in_words('largest_gap', settled['largest_gap'])}")  # fmt: skip
         said.append(lost)
     if summary["closed_form"]["hangs_up"]:
         said.append("the flange's friction is as large as the preload: segments hang up where the shaft leaves them")

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from typing import Literal, NamedTuple
 
 from ..numerics.piecewise_linear import points
+from ..quantities import in_words
 from ..units import (
     Angle,
     AsperityDensity,
@@ -136,15 +137,16 @@ def contact_thresholds(contact: Contact) -> tuple[float, float, float]:
 
 def film_in_words(thickness: float) -> str:
     """A film thickness (m); below none the faces, as their mean planes lie, overlap."""
-    return f"thinnest {thickness * 1e6:.4g} um" if thickness >= 0.0 else f"faces overlap by {-thickness * 1e6:.4g} um"
+    thickest = in_words("h_min", abs(thickness))
+    return f"thinnest {thickest}" if thickness >= 0.0 else f"faces overlap by {thickest}"
 
 
 def limit_in_words(lowest: float) -> str:
     """The film (m) at which a run ends: a floor above 0, or where rough faces overlap until their asperities are
     flat."""
     if lowest >= 0.0:
-        return f"the floor, {lowest * 1e6:.3g} um"
-    return f"all asperities flat, which overlap by {-lowest * 1e6:.3g} um then"
+        return f"the floor, {in_words('h_min', lowest, 3)}"
+    return f"all asperities flat, which overlap by {in_words('h_min', -lowest, 3)} then"
 
 
 def touch_height(scene) -> float:

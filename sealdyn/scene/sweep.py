@@ -14,6 +14,7 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
+from ..quantities import in_words
 from ..units import Acceleration, Angle, AngularAcceleration, Displacement, Frequency, Listed, Tilt, Time
 from . import Strict
 
@@ -174,19 +175,20 @@ def largest_amplitude(sweep: Sweep) -> float:
 
 def remark(sweep: Sweep, duration: float) -> str:
     """A sentence of what a sweep is, and how far a run of `duration` (s) has it."""
-    how, unit, per = ("angularly", "urad", "rad/s^2") if tilts(sweep) else ("axially", "um", "m/s^2")
+    how, unit, per = ("angularly", "rad", "rad/s^2") if tilts(sweep) else ("axially", "m", "m/s^2")
     first, last = sweep.frequency
-    pace = f"{abs(octaves(sweep)) / span(sweep) * 60.0:.4g} octaves a minute"
+    minutes = span(sweep) / 60.0
+    pace = f"{abs(octaves(sweep)) / minutes:.4g} octaves a minute"
     if sweep.spacing == "linear":
         pace = f"{abs(last - first) / span(sweep):.4g} Hz/s"
     size, crossover = level(sweep)
     if crossover == 0.0:
         kept = f"{size:.4g} {per}"
     elif math.isinf(crossover):
-        kept = f"{1e6 * size:.4g} {unit}"
+        kept = in_words(unit, size)
     else:
         corner = f"{crossover / (2 * math.pi):.4g} Hz"
-        kept = f"{1e6 * size:.4g} {unit} below {corner} and {size * crossover**2:.4g} {per} above"
+        kept = f"{in_words(unit, size)} below {corner} and {size * crossover**2:.4g} {per} above"
     said = (
         f"housing swept {how}: {first:g} to {last:g} Hz at {pace}, {kept}, from {sweep.start:.4g} to {end(sweep):.4g} s"
     )

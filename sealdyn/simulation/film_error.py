@@ -33,6 +33,7 @@ from ..faces.geometry import (
 )
 from ..films import film_named, limits
 from ..numerics.piecewise_linear import initially
+from ..quantities import in_words
 from ..scene.film import Reynolds
 from ..scene.patterns import waves_of
 from ..scene.scene import SceneError, seals_that_stick
@@ -241,8 +242,8 @@ def reynolds_comparison(run: RunState) -> dict | None:
     film.flow(f, s)
     tilt, torn = math.hypot(s[GX], s[GY]), s[CAVITATED] > TORN
     found = {"tilt": tilt, "force": None, "moment": None, "leakage": None, "cavitated": [float(s[CAVITATED]), None]}
-    at = f"at a tilt of {1e6 * tilt:.4g} urad"
-    what = f"floor of the pressure, on {100 * s[CAVITATED]:.2g} % of the face {at}" if torn else at
+    at = f"at a tilt of {in_words('tilt', tilt)}"
+    what = f"floor of the pressure, on {in_words('share', s[CAVITATED], 2)} of the face {at}" if torn else at
     x = np.empty(len(keeps.unknowns(g).names))
     code = keeps.start(g, other, x)
     if code == 0:
@@ -258,8 +259,8 @@ def reynolds_comparison(run: RunState) -> dict | None:
     off = {part: float(mine / whole - 1.0) for part, (mine, whole) in parts.items() if whole}
     than = "cavities that keep their liquid" if torn else "flow along the circle, too"
     than += ", between smooth faces" if scene.contact is not None else ""
-    told = ", ".join(f"{part} {100 * share:+.2g} %" for part, share in off.items() if abs(share) > FINE)
-    said = f"{what}, beside a film with {than} (reynolds): {told or f'the same within {100 * FINE:.2g} %'}"
+    told = ", ".join(f"{part} {in_words('share', share, 2, '+')}" for part, share in off.items() if abs(share) > FINE)
+    said = f"{what}, beside a film with {than} (reynolds): {told or 'the same within ' + in_words('share', FINE, 2)}"
     return found | off | {"cavitated": [float(s[CAVITATED]), float(other[CAVITATED])], "said": said}
 
 

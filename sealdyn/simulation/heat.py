@@ -165,9 +165,11 @@ def heat_cautions(scene, state: WarmState, friction: float = math.nan) -> list[C
     found, words = warming(scene), []
     liquid, film = liquid_of(scene.film), scene.film
     if (radius := boiling_radius(found, state)) is not None:
-        words.append(f"the film boils at the low pressure, up to r = {radius * 1e3:.5g} mm: no film here knows vapour")
+        words.append(
+            f"the film boils at the low pressure, up to r = {in_words('radius', radius, 5)}: no film here knows vapour"
+        )
     elif (radius := boiling_radius(found, state, HOTTEST)) is not None:
-        words.append(f"the film may boil where the face is hottest, up to r = {radius * 1e3:.5g} mm")
+        words.append(f"the film may boil where the face is hottest, up to r = {in_words('radius', radius, 5)}")
     for said, holds in (
         ("the convection is extrapolated beyond Becker's Reynolds numbers of 800 to 1e5", "extrapolated"),
         ("the band is narrower than a third of its ring: the resistance is known less well", "narrow"),
@@ -184,7 +186,9 @@ def heat_cautions(scene, state: WarmState, friction: float = math.nan) -> list[C
         words.append(f"the aligned film collapses at {course.collapsed:.4g} s; temperature and coning are then held")
     share = state.carried * state.rise / state.power if state.power else 0.0
     if share > CARRIES:
-        words.append(f"leakage carries {100 * share:.3g} % of the heat: the rise is at most half as high as told")
+        words.append(
+            f"leakage carries {in_words('share', share, 3)} of the heat: the rise is at most half as high as told"
+        )
     at, sliding = found.sealed + state.rise, abs(initially(scene.shaft.speed) - initially(scene.stator.speed))
     velocity = sliding * 0.5 * (film.inner_radius + film.outer_radius)
     step = 0.1

@@ -16,6 +16,7 @@ from ..dynamics.run_state import Caution, Concern
 from ..dynamics.signals import fields, fields_of, samples
 from ..faces.roughness import mean_film_cubed
 from ..numerics.piecewise_linear import initially, points
+from ..quantities import in_words
 from ..scenario.keys import held_at, radius_key, without_indices
 from ..scenario.reader import Scenario
 from ..scenario.tables import kind_of_scene
@@ -136,7 +137,7 @@ def _units(scenario, model):
     """Bare numbers that no seal has, faces a millimetre apart."""
     yield from (Caution(Concern.UNITS, said) for said in unit_warnings(scenario))
     if model.clearance > WIDE and "film.clearance" not in scenario.bare:
-        apart = f"the faces are {model.clearance * 1e3:.4g} mm apart"
+        apart = f"the faces are {in_words('m', model.clearance)} apart"
         yield Caution(Concern.UNITS, f"{apart}: is that possible?  No film seals at this distance")
 
 
@@ -144,7 +145,7 @@ def _wear(rate):
     """Faces that are gone within hours."""
     if math.isfinite(rate) and rate > GONE:
         how = "is the unit of the wear coefficient right, 1/Pa or mm^3/(N*m)?"
-        yield Caution(Concern.WEAR, f"the faces wear {3.6e6 * rate:.4g} mm/h, and are gone in hours: {how}")
+        yield Caution(Concern.WEAR, f"the faces wear {in_words('wear_rate', rate)}, and are gone in hours: {how}")
 
 
 def _thin_film(scene, h_min):
@@ -157,8 +158,8 @@ def _thin_film(scene, h_min):
     elif scene.contact is None:
         why = "lapped faces are rougher, which a table [contact] counts"
     else:
-        why = f"below the roughness of {rough * 1e9:.4g} nm its pressure is that of smooth faces"
-    yield Caution(Concern.THIN_FILM, f"the film thins to {h_min * 1e9:.4g} nm: {why}")
+        why = f"below the roughness of {in_words('m', rough)} its pressure is that of smooth faces"
+    yield Caution(Concern.THIN_FILM, f"the film thins to {in_words('m', h_min)}: {why}")
 
 
 def _roughness_leakage(model, h_min):
@@ -169,7 +170,7 @@ def _roughness_leakage(model, h_min):
     x = h_min / (HALF_HEIGHT * scene.contact.roughness)
     more = float(mean_film_cubed(x)) / x**3 - 1.0
     if more > LETS_THROUGH:
-        how = f"where the film is thinnest rough ones let {100 * more:.0f} % more through"
+        how = f"where the film is thinnest rough ones let {in_words('share', more, 2)} more through"
         # That of a liquid.
         counts = "" if scene.film.gas else '; film.model = "reynolds" counts them'
         yield Caution(Concern.ROUGH_FILM, f"leakage is that of smooth faces: {how}, after Christensen{counts}")
@@ -179,7 +180,7 @@ def _contact_arm(scene):
     film = scene.film
     if scene.contact is not None and film.tilt_radius == "mean":
         off = (film.outer_radius - film.inner_radius) / (film.outer_radius + film.inner_radius)
-        why = f"at an edge its moment is wrong by {100 * off:.3g} %"
+        why = f"at an edge its moment is wrong by {in_words('share', off, 3)}"
         sentence = f'film.tilt_radius = "mean" puts the contact force at the mean radius: {why}'
         yield Caution(Concern.CONTACT_ARM, sentence)
 
@@ -188,7 +189,7 @@ def _heat(film, rise, flux):
     if math.isfinite(rise) and rise > WARM:
         heat = f"friction would heat the leakage by {rise:.4g} K"
         if rise > CARRIED:
-            heat = f"the leakage cannot carry the friction's {1e-4 * flux:.4g} W/cm^2 of face"
+            heat = f"the leakage cannot carry the friction's {in_words('heat_flux', flux)} of face"
         counted = "; film.heat with film.liquid counts what the rings take" if film.gas is None else ""
         yield Caution(Concern.HEATING, f"not isothermal: {heat}, and the film has one viscosity{counted}")
 
@@ -200,8 +201,8 @@ def _turbulence(model, leakage):
     (first, inner), (most, radius) = numbers[0], max(numbers)
     doubt = f"the film counts as laminar, which it is below some {LAMINAR:.0f}"
     if most > LAMINAR:
-        found = f"Couette Reynolds number {first:.0f} at r = {inner * 1e3:.4g} mm"
-        found += f", {most:.0f} at {radius * 1e3:.4g} mm" if radius != inner else ""
+        found = f"Couette Reynolds number {first:.0f} at r = {in_words('radius', inner)}"
+        found += f", {most:.0f} at {in_words('radius', radius)}" if radius != inner else ""
         yield Caution(Concern.TURBULENCE, f"perhaps turbulent: {found}; {doubt}")
     through, _ = leakage_numbers(model, leakage)
     if math.isfinite(through) and through > LAMINAR:
@@ -224,7 +225,7 @@ def _gas_flow(model, leakage):
     thickest, at = max((h, r) for r, h in model.aligned_gaps())
     most = couette_number(model, at, thickest)
     if most > LAMINAR:
-        found = f"Couette Reynolds number {most:.0f} at r = {at * 1e3:.4g} mm"
+        found = f"Couette Reynolds number {most:.0f} at r = {in_words('radius', at)}"
         yield Caution(Concern.TURBULENCE, f"perhaps turbulent: {found}, below {LAMINAR:.0f} it is laminar")
 
 
@@ -242,10 +243,8 @@ def _wide_dam(film):
         forces.append(float(np.trapezoid(p - low, r)))
     off = forces[0] / forces[1] - 1.0 if forces[1] else 0.0
     if abs(off) > OFF:
-        sentence = (
-            f"the friction is that of the dam's mean radius: the gauge force of so wide a dam is {100 * off:+.2g} %"
-        )
-        yield Caution(Concern.WIDE_DAM, f"{sentence} off where the flow is slow")
+        sentence = "the friction is that of the dam's mean radius: the gauge force of so wide a dam is "
+        yield Caution(Concern.WIDE_DAM, f"{sentence}{in_words('share', off, 2, '+')} off where the flow is slow")
 
 
 def _inertia(scene):
@@ -257,9 +256,9 @@ def _inertia(scene):
     speeds = product(points(scene.stator.speed), points(scene.shaft.speed))
     most = max(centrifugal_pressure(film.density, s, r, film.inner_radius, film.outer_radius) for s, r in speeds)
     if most > HEAVY * drop:
-        share = f", {100 * most / drop:.3g} % of the sealed pressure" if drop else ""
+        share = f", {in_words('share', most / drop, 3)} of the sealed pressure" if drop else ""
         cure = f"{film.model} has none" if film.model == "reynolds" else "film.inertia = true adds it"
-        sentence = f"centrifugal inertia of the film is left out: {most / 1e3:.3g} kPa{share}; {cure}"
+        sentence = f"centrifugal inertia of the film is left out: {in_words('Pa', most, 3)}{share}; {cure}"
         yield Caution(Concern.INERTIA, sentence)
 
 
@@ -277,8 +276,8 @@ def _flash(run, outcome):
 def _boiling(film, least):
     """A pressure (Pa) below the vapour pressure."""
     if film.vapour_pressure is not None and least < film.vapour_pressure:
-        vapour = f"below the vapour pressure of {film.vapour_pressure / 1e3:.4g} kPa"
-        sentence = f"the film falls to {least / 1e3:.4g} kPa, {vapour}: it boils there, which no film here knows"
+        vapour = f"below the vapour pressure of {in_words('Pa', film.vapour_pressure)}"
+        sentence = f"the film falls to {in_words('Pa', least)}, {vapour}: it boils there, which no film here knows"
         yield Caution(Concern.FLASHING, sentence)
 
 
@@ -317,7 +316,7 @@ def unusual(key: str, values: list[float], known: tuple[Quantity | None, Usual |
     value = max(odd, key=lambda value: abs(math.log(abs(value))))
     pure = quantity is None or usual.meant == "%"
     unit = "" if pure else f"{quantity.unit}{' between samples' * isinstance(quantity, SampleTime)}"
-    meant = f"{100.0 * value:.6g} %" if pure else quantity.as_meant(value)
+    meant = in_words("share", value, 6) if pure else quantity.as_meant(value)
     return [f"{key} without a unit is read as {f'{value:.6g} {unit}'.strip()}, which is {meant}: write its unit"]
 
 
@@ -385,9 +384,8 @@ class Size:
 
     def __str__(self):
         """In words."""
-        return (
-            f"{self.turns:.3g} turns, {self.rows:.3g} rows: an archive of {_bytes(self.bytes)}, {_time(self.seconds)}"
-        )
+        kept, lasts = in_words("B", self.bytes, 3), in_words("time", self.seconds, 2)
+        return f"{self.turns:.3g} turns, {self.rows:.3g} rows: an archive of {kept}, at least {lasts}"
 
 
 def size_of(scenario: Scenario, rows: int | None = None) -> Size:
@@ -418,15 +416,3 @@ def refuse_large(scenario: Scenario, allowed: bool = False, rows: int | None = N
         key = "run.turns" if settings.turns is not None else "run.duration"
     less = f"fewer: at most {LARGE / ROW:.2g} rows and {LONG / TURN:.2g} turns"
     raise SceneError(key, str(size), f"{less}; or --yes (allow_large=True)" if size.possible else less)
-
-
-def _bytes(count: float) -> str:
-    return f"{count / 1e9:.3g} GB" if count < 1e15 else f"{count:.1e} bytes"
-
-
-def _time(seconds: float) -> str:
-    if seconds < 3600.0:
-        return f"at least {seconds:.2g} s"
-    if seconds < 86400.0:
-        return f"at least {seconds / 3600:.2g} h"
-    return f"at least {seconds / 86400:.3g} days" if seconds < 3e9 else f"at least {seconds / 3.156e7:.2g} years"

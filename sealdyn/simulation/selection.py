@@ -12,6 +12,7 @@ from ..dynamics.model import Model
 from ..dynamics.run_state import Caution, Concern, RunState
 from ..dynamics.swept_motion import COARSE, PER_PERIOD, splines
 from ..faces.geometry import COLLAPSE, DZ, FLOOR
+from ..quantities import in_words
 from ..scenario.reader import Scenario
 from ..scenario.tables import Run
 from ..scene.fluid import viscosity_of
@@ -119,10 +120,10 @@ def _prepared(scenario, lowest):
         run.cautions.append(Caution(Concern.ALIASING, sentence))
     for key, sampled in splines(scenario.scene).items():
         if sampled.coarse > COARSE:
-            share = 100.0 * sampled.coarse
+            power = in_words("share", sampled.coarse, 2)
             sentence = (
-                f"aliasing: {share:.2g} % of the power of the rate of {key} has fewer than {PER_PERIOD} "
-                "samples a period: give it finer"
+                f"aliasing: {power} of the power of the rate of {key} has fewer than {PER_PERIOD} samples a period: "
+                "give it finer"
             )
             run.cautions.append(Caution(Concern.ALIASING, sentence))
     return run, Plan(run.model.interface.name, method, None, chosen[0], why, interval, count, film_error)

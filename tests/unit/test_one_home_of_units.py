@@ -1,11 +1,12 @@
 """Display units have one home: sealdyn/quantities.py.
 
-Looked for in the source of report/, studies/ and dynamics/signals.py, by syntax alone:
+Looked for in the source of the package, by syntax alone (not where units are read, and in the tables of sources, which
+have their units):
 
 - a pair or a mapping of a unit that people read (each name in the table of quantities but those of SI) with a number
   or another such pair: a table of units;
 - in the braces of an f-string, a product or quotient with the factor of such a unit: a number formatted by hand;
-- in the drawing room and in the signals, where nothing is computed, any product with a factor of a thousand and more.
+- in report/ and in the signals, where nothing is computed, any product with a factor of a thousand and more.
 
 Not seen: a factor bound to a name of its own, a unit spelled within a sentence, a conversion by np.degrees.
 """
@@ -18,7 +19,8 @@ import pytest
 from sealdyn import quantities
 
 PACKAGE = Path(quantities.__file__).parent
-LOOKED_AT = sorted([*PACKAGE.glob("report/**/*.py"), *PACKAGE.glob("studies/**/*.py"), PACKAGE / "dynamics/signals.py"])
+ELSEWHERE = ("quantities.py", "units.py", "unit_names.py", "scenario/errors.py", "analysis/sources")
+LOOKED_AT = {path.relative_to(PACKAGE).as_posix(): path for path in sorted(PACKAGE.rglob("*.py"))}
 SHOWN = {(name, factor) for rows in quantities.SIZES.values() for _, name, factor in rows}
 SHOWN |= {(held.shown, held.factor) for held in quantities.QUANTITIES.values()}
 NAMES = {spelled for name, factor in SHOWN if name and factor != 1.0 for spelled in (name, quantities.printed(name))}
@@ -71,10 +73,10 @@ def found_in(text: str, draws: bool = False) -> list[int]:
 @pytest.mark.core
 def test_no_file_has_units_of_its_own():
     found = {}
-    for path in LOOKED_AT:
-        draws = "studies" not in path.relative_to(PACKAGE).parts
-        if lines := found_in(path.read_text(), draws):
-            found[str(path.relative_to(PACKAGE))] = lines
+    for name, path in LOOKED_AT.items():
+        draws = name.startswith(("report/", "dynamics/signals"))
+        if not name.startswith(ELSEWHERE) and (lines := found_in(path.read_text(), draws)):
+            found[name] = lines
     assert found == {}
 
 
