@@ -170,3 +170,22 @@ def opening_force(clearance, coning, p_i, p_o, r_i=0.032, r_o=0.040, geometry="c
     # int p 2 pi r dr by parts: pi [p r^2] - pi int p' r^2 dr.
     bent = quad(lambda r: per(r) * r * r, r_i, r_o, **options)[0] / whole
     return np.pi * (p_o * r_o**2 - p_i * r_i**2 - (p_o - p_i) * bent)
+
+
+def viscous_dam_pressure(x, films, length, pressures):
+    """Pressure (Pa) at `x` (m) from the entrance of a gas dam without inertia, laminar or turbulent: P^2 falls as
+    int dx/h^3 between `films` (m) and `pressures` (Pa) at entrance and exit.  Zuk, NASA TM X-68022 (1972)."""
+    (h_1, h_2), (p_1, p_2) = films, pressures
+    h = h_1 + (h_2 - h_1) * x / length
+    part = x / length * h_2**2 * (h_1 + h) / ((h_1 + h_2) * h**2)
+    return np.sqrt(p_1**2 + (p_2**2 - p_1**2) * part)
+
+
+def viscous_dam_load(films, length, pressures):
+    """Its gauge force per width (N/m), and the centre of that (share of the length from the entrance)."""
+
+    def gauge(x):
+        return viscous_dam_pressure(x, films, length, pressures) - pressures[1]
+
+    force = quad(gauge, 0, length, epsrel=1e-11, limit=200)[0]
+    return force, quad(lambda x: gauge(x) * x, 0, length, epsrel=1e-11, limit=200)[0] / (force * length)

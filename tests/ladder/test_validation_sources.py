@@ -8,6 +8,7 @@ from itertools import islice
 import numpy as np
 import pytest
 from command import sealdyn
+from oracles import viscous_dam_pressure
 
 from sealdyn import closed_form
 from sealdyn import films as films_there_are
@@ -147,7 +148,7 @@ def test_the_tilt_counted_twice_by_the_viscous_form(entry, dams):
     """The same error in a pressure without inertia: 1.5 % off the print, where the right pressure is 9 to 42 % off."""
     h_1, h_2 = entry.mean_film - entry.tilt * WIDTH / 2, entry.mean_film + entry.tilt * WIDTH / 2
     x = np.linspace(0, WIDTH, 20_001)
-    right = zuk.pressure(x, h_1, h_2, WIDTH, zuk.CRUISE.high_pressure, zuk.CRUISE.low_pressure)
+    right = viscous_dam_pressure(x, (h_1, h_2), WIDTH, (zuk.CRUISE.high_pressure, zuk.CRUISE.low_pressure))
     wrong = right * (h_1 + entry.tilt * x) / (h_1 + 2 * entry.tilt * x) - zuk.CRUISE.low_pressure
     force = np.trapezoid(wrong, x)
     rows = {row["quantity"]: row for row in dams if (row["tilt"], row["mean_film"]) == (entry.tilt, entry.mean_film)}
