@@ -108,14 +108,6 @@ class Ring:
         moved = self._displaced(np.stack([self._thermal_load(rise) for rise in rises.T], axis=1))
         return rises[at], moved[2 * at + 1], self._face_radii()[at]
 
-    def spun(self):
-        """Coning (rad s^2) over the square of the speed (rad/s)."""
-        mesh = self.mesh
-        element = np.einsum("ap,ep->ea", mesh.values, self.ring.density * mesh.r * mesh.weight)
-        load = np.zeros(2 * mesh.size)
-        np.add.at(load, 2 * mesh.nodes, element)
-        return self._shape(self._displaced(load))[0]
-
     def _cooled(self):
         """The factors of the matrix (W/K) of conduction and convection."""
         ring, mesh = self.ring, self.mesh

@@ -1,7 +1,7 @@
 """What a ring of a scene takes of the film's heat, and stores: numbers of its maker, or its drawing, material and
 cooling.
 
-**Source** faces/ring_heat.py for a ring from its drawing, closed_form/ring_fin.py for its convection by speed.
+**Source** faces/ring_heat.py for a ring from its drawing, and for its convection by speed.
 **Valid** convection at the largest speed of the scene, which stays while that changes, and at the temperature of the
 sealed liquid.
 """
@@ -48,8 +48,7 @@ def heated_body(scene, name: str, cooling: float = 1.0) -> HeatedBody:
     ring = getattr(scene.film.heat, name)
     if ring.convection is None:
         return HeatedBody(ring.resistance, ring.coning_per_watt, ring.time_constant)
-    from ..closed_form.ring_fin import ring_cooling
-    from ..faces.ring_heat import RingBody, ring_heat
+    from ..faces.ring_heat import RingBody, ring_cooling, ring_heat
 
     film, body, liquid, cooled = scene.film, getattr(scene, name).body, liquid_of(scene.film), None
     sealed, convection = initially(film.temperature), ring.convection

@@ -1,4 +1,4 @@
-"""What heat does to a ring from its drawing: its temperatures and the coning of its face.
+"""What heat does to a ring from its drawing: its temperatures and the coning of its face; its cooling by its speed.
 
 **Heat**  Finite volumes over radius and depth: heat enters evenly over the band, liquid takes it on the wetted side
 from the face to the O-ring and on the wetted face beside the band, all else is insulated.  Temperatures count from the
@@ -400,3 +400,38 @@ def _radii(body: RingBody) -> np.ndarray:
 def _annulus(inner, outer):
     """Its area (m^2)."""
     return np.pi * (outer**2 - inner**2)
+
+
+# Reynolds numbers w D^2/(2 nu) over which Becker measured.
+BECKER_RANGE = (800.0, 1e5)
+# A correlation for a free cylinder in a chamber with flush and dead corners: within this factor either way.
+CONVECTION_FACTOR = 2.0
+
+
+class Cooling(NamedTuple):
+    """Convection of a ring by its speed: `value`, and the `low` and `high` it may be (W/(m^2 K)); the Reynolds number
+    w D^2/(2 nu), and whether it is `extrapolated` beyond what was measured."""
+
+    value: float
+    low: float
+    high: float
+    reynolds: float
+    extrapolated: bool
+
+
+def ring_cooling(speed: float, diameter: float, liquid: tuple[float, float, float, float], turns: bool) -> Cooling:
+    """Convection of a cylinder that turns in liquid, Nu_D = 0.133 Re^(2/3) Pr^(1/3), twice or half of it.
+
+    A ring that stands has the liquid turn past it at half the speed, an assumption.  `speed` (rad/s) of the other ring
+    over it, `diameter` (m) of its wetted side, `liquid` (density kg/m^3, viscosity Pa s, specific heat J/(kg K),
+    conductivity W/(m K)).
+    **Source** Becker (1963), a horizontal cylinder in water, as it is widely quoted; the paper itself was not seen.
+    **Valid** Re = w D^2/(2 nu) of 800 to 1e5.  From 1e4 to 3e6 within a third of the analogy of heat and friction
+    (Chilton & Colburn (1934), drag of Theodorsen & Regier, NACA report 793 (1944)).
+    """
+    density, viscosity, specific_heat, conductivity = liquid
+    passing = abs(speed) if turns else abs(speed) / 2
+    reynolds, prandtl = passing * diameter**2 * density / (2 * viscosity), viscosity * specific_heat / conductivity
+    value = 0.133 * reynolds ** (2 / 3) * prandtl ** (1 / 3) * conductivity / diameter
+    outside = not BECKER_RANGE[0] <= reynolds <= BECKER_RANGE[1]
+    return Cooling(value, value / CONVECTION_FACTOR, value * CONVECTION_FACTOR, reynolds, outside)

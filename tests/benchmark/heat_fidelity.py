@@ -18,10 +18,10 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "ladder"))
 
 import matplotlib.pyplot as plt
 import own_warm
+from oracles import ring_fin
 from test_warm_seals_whole import SEALS
 from warm_seals import OIL, ROUGH, warm_seal
 
-from sealdyn.closed_form.ring_fin import ring_fin
 from sealdyn.dynamics.warm_state import Warming
 from sealdyn.faces.ring_heat import conduction, ring_heat
 
@@ -35,7 +35,7 @@ def numbers(body) -> dict:
     """What the fin says of a ring."""
     solid = {key: getattr(body, key) for key in ("conductivity", "expansion", "poisson", "density", "specific_heat")}
     fin = ring_fin(body.inner_radius, body.outer_radius, body.length, **solid, convection=body.convection)
-    return {"resistance": fin.resistance, "coning_per_watt": fin.coning_per_watt, "time_constant": fin.time_constant}
+    return dict(zip(("resistance", "coning_per_watt", "time_constant"), map(float, fin), strict=True))
 
 
 def drawing(body) -> dict:
