@@ -11,8 +11,6 @@ from typing import TYPE_CHECKING
 
 from .film import (
     FilmCoefficients,
-    aligned_leakage,
-    aligned_opening_force,
     film_coefficients,
     narrow_seal_opening_force,
     optimum_coning,
@@ -63,8 +61,6 @@ __all__ = [
     "FilmCoefficients",
     "Published",
     "TiltingRing",
-    "aligned_leakage",
-    "aligned_opening_force",
     "axial_groups",
     "axial_mode_stable",
     "centrifugal_pressure",

@@ -151,48 +151,6 @@ def _radial_weight(inner_radius, outer_radius, clearance, coning, geometry):
     return r, h, dr / h**3 / (r if geometry == "cylindrical" else 1.0)
 
 
-def aligned_opening_force(
-    inner_radius: Real,
-    outer_radius: Real,
-    clearance: Real,
-    coning: Real,
-    inner_pressure: Real,
-    outer_pressure: Real,
-    geometry: Geometry = "cylindrical",
-) -> Real:
-    """Opening force (N) of the aligned radial film, area elements exact: `int p 2 pi r dr`.  Arguments as the module.
-
-    **Source** `r h^3 p' = const` (planar: `h^3 p' = const`), integrated by parts.
-    **Valid** aligned faces, full film, incompressible; any face width if cylindrical.
-    **Raises** ValueError when the faces cross.
-    """
-    r, _, weight = _radial_weight(inner_radius, outer_radius, clearance, coning, geometry)
-    mean_square = (weight * r**2).sum(-1) / weight.sum(-1)
-    drop = np.subtract(outer_pressure, inner_pressure)
-    at_edges = outer_pressure * np.square(outer_radius) - inner_pressure * np.square(inner_radius)
-    return math.pi * (at_edges - drop * mean_square)
-
-
-def aligned_leakage(
-    inner_radius: Real,
-    outer_radius: Real,
-    clearance: Real,
-    coning: Real,
-    viscosity: Real,
-    pressure_drop: Real,
-    geometry: Geometry = "cylindrical",
-) -> Real:
-    """Volume flow (m^3/s) through the aligned film, positive inwards for a positive pressure drop.  Arguments as the
-    module.
-
-    **Source** Poiseuille flow `r h^3 p' / (12 mu)` per radian; planar: the strip is `2 pi r_m` long.
-    **Valid** aligned faces, laminar, incompressible.  **Raises** ValueError when the faces cross.
-    """
-    _, _, weight = _radial_weight(inner_radius, outer_radius, clearance, coning, geometry)
-    length = 1.0 if geometry == "cylindrical" else np.add(inner_radius, outer_radius) / 2
-    return math.pi * length * pressure_drop / (6 * viscosity * weight.sum(-1))
-
-
 def radial_film_coefficients(
     inner_radius: Real,
     outer_radius: Real,
@@ -250,22 +208,6 @@ def groove_coefficients(face: GroovedFace) -> tuple[float, float]:
     mixed, step = b * (1.0 - b), cube - land
     whole = (1.0 - b) * cube + b * land
     return (sin * sin * mixed * step * step + cube * land) / whole, sin * cos * mixed * step * face.depth / whole
-
-
-def pumped_pressure(face: GroovedFace, viscosity: float, entrainment: float) -> float:
-    """Rise of pressure (Pa) outwards over the grooved annulus of a liquid that does not flow: 6 mu w (K2/K1)
-    (r_2^2 - r_1^2)."""
-    k1, k2 = groove_coefficients(face)
-    rise = face.groove_outer_radius**2 - face.groove_inner_radius**2
-    return 6.0 * viscosity * entrainment * k2 / k1 * rise
-
-
-def muijderman_number(angle: float, films: float, lands: float = 1.0) -> float:
-    """g1 of |p_2 - p_1| = 3 mu W (r_2^2 - r_1^2) g1/h_l^2, W = 2 w, for the ratio `films` of land to groove film and
-    `lands` of land to groove width; at most 0.091176, at 15.68 degrees, films 0.2737, lands 1."""
-    cube, slope = films**3, 1.0 / math.tan(angle)
-    below = (1.0 + lands * cube) * (lands + cube) + cube * slope * slope * (1.0 + lands) ** 2
-    return films**2 * slope * lands * (1.0 - films) * (1.0 - cube) / below
 
 
 class NarrowGrooves(NamedTuple):
