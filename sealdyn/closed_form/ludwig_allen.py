@@ -4,11 +4,16 @@
 TN D-8102 (1976); eigenvalues and the moment about the tilt axis derived here from their film.
 **Valid** zero sealed pressure, film `h = h0 + h1 cos(theta)` constant over a narrow face (short bearing), pressure
 ambient in the diverging half, no inertia.  U is the sliding speed at the mean radius R, dR the face width, F_s the
-spring force, F_d the friction force on one half of the secondary seal, q = F_s / F_d.
+spring force, F_d the friction force on one half of the secondary seal, q = F_s / F_d.  Over the width the wedge has
+the mean p = -(mu U dR^2 / 2R) h^-3 dh/dtheta where that is positive: over mu U dR^3 and of moments over R, a force, a
+moment about the diameter through thickest and thinnest film, and one about the tilt axis, which straightens the ring
+and which they leave unbalanced,
+
+    h0 h1 / (h0^2 - h1^2)^2,     (pi/4) h1 / (h0^2 - h1^2)^(3/2),     -h1^2 / (h0^2 - h1^2)^2
+
 With sealed pressures (`edges`, sealed_wedge.py) F_s is the closing load that their line over the width leaves; without
 them all is theirs.
-Arguments: `viscosity` mu (Pa s), `sliding_speed` U (m/s), `face_width` dR, `mean_radius` R, `mean_film` h0 and
-`amplitude` h1 (m), forces (N), `force_ratio` q; scalars or arrays that broadcast.
+Arguments: `force_ratio` q, `group` mu U dR^3 / F_s (m^2); scalars or arrays that broadcast.
 """
 
 import math
@@ -41,53 +46,6 @@ class Published(NamedTuple):
 LUDWIG_ALLEN = (Published(2.0, 0.71e-6, 0.30e-6), Published(5.0, 5.69e-6, None))
 LUDWIG_ALLEN_GROUP = 3.79e-13
 LUDWIG_ALLEN_FACE_WIDTH = 1.02e-3
-
-
-def _open(mean_film: Real, amplitude: Real) -> Real:
-    """h0^2 - h1^2 (m^2); ValueError if the faces touch."""
-    if not np.all(np.abs(amplitude) < mean_film):
-        raise ValueError("film: the amplitude h1 must be smaller than the mean film h0")
-    return np.subtract(mean_film, amplitude) * np.add(mean_film, amplitude)
-
-
-def wedge_pressure(viscosity: Real, sliding_speed: Real, face_width: Real, mean_radius: Real,
-                   film: Real, film_slope: Real) -> Real:  # fmt: skip
-    """Pressure (Pa) averaged over the face width, `-(mu U dR^2 / 2R) h^-3 dh/dtheta`, ambient where that is negative.
-
-    `film` in m, `film_slope` dh/dtheta in m/rad.  **Source**, **Valid**, other arguments as the module.
-    """
-    return np.maximum(-viscosity * sliding_speed * face_width**2 / (2 * mean_radius) * film_slope / film**3, 0.0)
-
-
-def wedge_force(viscosity: Real, sliding_speed: Real, face_width: Real, mean_film: Real, amplitude: Real) -> Real:
-    """Force (N) of the wedge, `mu U dR^3 h0 h1 / (h0^2 - h1^2)^2`.
-
-    **Source**, **Valid**, arguments as the module.  **Raises** ValueError when the faces touch.
-    """
-    return viscosity * sliding_speed * face_width**3 * mean_film * amplitude / _open(mean_film, amplitude) ** 2
-
-
-def sine_moment(viscosity: Real, sliding_speed: Real, face_width: Real, mean_radius: Real,
-                mean_film: Real, amplitude: Real) -> Real:  # fmt: skip
-    """Moment (N m) about the diameter through thickest and thinnest film, perpendicular to the tilt axis:
-    `(pi/4) mu U R dR^3 h1 / (h0^2 - h1^2)^(3/2)`.
-
-    **Source** as the module, with R_o^2 - R_i^2 = 2 R dR.  **Valid**, arguments as the module; over a face of finite
-    width the arm is longer by dR^2 / (20 R^2).  **Raises** ValueError when the faces touch.
-    """
-    strength = math.pi / 4 * viscosity * sliding_speed * mean_radius * face_width**3
-    return strength * amplitude / _open(mean_film, amplitude) ** 1.5
-
-
-def cosine_moment(viscosity: Real, sliding_speed: Real, face_width: Real, mean_radius: Real,
-                  mean_film: Real, amplitude: Real) -> Real:  # fmt: skip
-    """Moment (N m) about the tilt axis, negative: it straightens the ring; `-mu U R dR^3 h1^2 / (h0^2 - h1^2)^2`.
-
-    **Source** derived here; Ludwig & Allen leave it unbalanced.  **Valid**, arguments as the module.
-    **Raises** ValueError when the faces touch.
-    """
-    strength = viscosity * sliding_speed * mean_radius * face_width**3
-    return -strength * amplitude**2 / _open(mean_film, amplitude) ** 2
 
 
 def friction_moment(friction_force: Real, mean_radius: Real) -> Real:

@@ -46,14 +46,6 @@ class Edges(NamedTuple):
         return self.inner > 0.0 or self.outer > 0.0
 
 
-def mean_excess(wedge: float | np.ndarray, inner: float | np.ndarray, outer: float | np.ndarray) -> np.ndarray:
-    """Pressure (Pa) above the line between the edges, averaged over the width; `wedge` P, and pressures of both edges
-    above the cavity's, in Pa; arrays that broadcast.  **Source**, **Valid** as the module."""
-    wedge = np.asarray(wedge, dtype=float)
-    dry = _dry(np.where(wedge < 0.0, -6 * wedge, 1.0), inner, outer)
-    return (wedge * (1 - np.where(wedge < 0.0, dry, 0.0) ** 3))[()]
-
-
 def _dry(depth, inner, outer):
     """Share of the width that is dry under a parabola of curvature 2 `depth` > 0."""
     below = 1 - 2 * (inner + outer) / depth + ((outer - inner) / depth) ** 2

@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import pytest
-from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from sealdyn.closed_form import ludwig_allen as la
@@ -23,22 +22,6 @@ CASES = {
 # Middles of cells over the width, and around the circle.
 X = (np.arange(1500) + 0.5) / 1500
 THETA = (np.arange(1500) + 0.5) / 1500 * 2 * math.pi
-
-
-@pytest.mark.core
-@pytest.mark.parametrize("inner, outer", [(0.0, 1.0), (1.0, 0.0), (0.3, 0.7), (0.5, 0.5), (0.0, 0.0)])
-def test_mean_over_the_width(inner, outer):
-    """Without, just with, and nearly all cavity: the cut profile by quadrature between its own zeros."""
-    for wedge in (0.4, -0.02, -0.1, -0.3, -0.6, -5.0, -80.0):
-
-        def profile(x, wedge=wedge):
-            return inner + (outer - inner) * x + 6 * wedge * x * (1 - x)
-
-        zeros = np.roots([-6 * wedge, outer - inner + 6 * wedge, inner])
-        breaks = sorted({x.real for x in zeros if abs(x.imag) < 1e-12 and 0 < x.real < 1})
-        wet = quad(lambda x: max(profile(x), 0.0), 0, 1, points=breaks or None, epsabs=1e-13)[0]
-        found = sealed.mean_excess(wedge, inner, outer)
-        assert found == pytest.approx(wet - 0.5 * (inner + outer), abs=1e-11), wedge
 
 
 def summed(e, number, edges):
