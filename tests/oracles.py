@@ -209,3 +209,8 @@ def ring_fin(a, b, length, *, conductivity, expansion, poisson, density, specifi
     coning = expansion * resistance * ((a + b) / 2 / length * moment + axial)
     spread = 1 + 2 * z / np.sinh(2 * z)
     return resistance, coning, spread * density * specific_heat / (2 * conductivity * m**2)
+
+
+def contact_tilt(inner_radius, outer_radius, clearance, coning):
+    """Tilt (rad) at which cones at the aligned clearance touch, at whichever edge."""
+    return min(clearance / inner_radius, (clearance + coning * (outer_radius - inner_radius)) / outer_radius)

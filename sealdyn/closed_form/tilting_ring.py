@@ -47,26 +47,6 @@ def fmr_static(
     return _size(relative / (support_stiffness + film_stiffness - entrained))
 
 
-def fmr_absolute_static(
-    *,
-    speed: Real,
-    transverse_inertia: Real,
-    polar_inertia: Real,
-    support_stiffness: Real,
-    support_damping: Real,
-    film_stiffness: Real,
-    film_damping: Real,
-) -> Real:
-    """Absolute tilt of a flexible rotor per unit fixed stator misalignment, rad/rad; 1 is perfect tracking.  Keywords
-    as the module.
-
-    **Source** Green (1989): `|K_f - i w D_f/2| / |K - i (D_s + D_f/2) w|`.  **Valid** as `fmr_static`.
-    """
-    drive = film_stiffness - 0.5j * film_damping * speed
-    entrained = 1j * (support_damping + film_damping / 2) * speed
-    return _size(drive / (support_stiffness + film_stiffness - entrained))
-
-
 def fmr_dynamic(
     *,
     speed: Real,
@@ -139,47 +119,14 @@ def superposed(static: Real, dynamic: Real) -> tuple[Real, Real]:
 # --- Contact onset -----------------------------------------------------------------------------------
 
 
-def critical_tilt_inner(clearance: Real, inner_radius: Real) -> Real:
-    """Relative tilt (rad) at which the inner edges touch; arguments in m.  **Valid** rings held at the aligned
-    clearance."""
-    return clearance / inner_radius
-
-
-def critical_tilt_outer(inner_radius: Real, outer_radius: Real, clearance: Real, coning: Real) -> Real:
-    """Relative tilt (rad) at which the outer edges touch; arguments in m, coning in rad.  **Valid** as
-    `critical_tilt_inner`."""
-    return (clearance + coning * (outer_radius - inner_radius)) / outer_radius
-
-
-def critical_coning(clearance: Real, inner_radius: Real) -> Real:
-    """Coning (rad) at which both edges touch at once; above it the inner edge touches first, and the narrow film is
-    stiff against tilt.  Arguments in m.
-
-    **Source** Green and Etsion (1985), `b = 1/R` with `b = coning r_o / C`.  **Valid** flat cones.
-    """
-    return clearance / inner_radius
-
-
-def contact_tilt(inner_radius: Real, outer_radius: Real, clearance: Real, coning: Real) -> Real:
-    """Relative tilt (rad) at which the faces first touch, at whichever edge; arguments in m, coning in rad.
-
-    **Source** Green (1989): inner edge above the critical coning, outer edge below.  The film is linear in the radius,
-    so an edge is always the thinnest place.
-    **Valid** small perturbation: the real seal opens axially as it tilts and touches later.
-    """
-    return np.minimum(
-        critical_tilt_inner(clearance, inner_radius),
-        critical_tilt_outer(inner_radius, outer_radius, clearance, coning),
-    )
-
-
 def critical_forcing(contact_tilt: Real, own_response: Real, transmissibility: Real) -> Real:
     """Forcing (rad) at which the relative misalignment reaches the contact tilt (rad).
 
     `own_response` (rad) is what the ring's own initial misalignment already takes, `transmissibility` (rad/rad) that of
     the forcing; the result is zero or negative when the own response alone touches, and infinite when nothing is
     transmitted.
-    **Source** Green (1989), `(1/R - T_own) / T` in units of C/r_o.  **Valid** as `contact_tilt`.
+    **Source** Green (1989), `(1/R - T_own) / T` in units of C/r_o.  **Valid** rings held at the aligned clearance: the
+    real seal opens axially as it tilts and touches later.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.divide(np.subtract(contact_tilt, own_response), transmissibility)
@@ -237,14 +184,11 @@ def fmsr_relative_tilts(speed: Real, film_stiffness: Real, film_damping: Real, r
     return static, -rotor.support_stiffness * behind / whole
 
 
-def _totals(support_stiffness, support_damping, film_stiffness, film_damping) -> tuple[float, float]:
-    """K and D, both checked."""
-    stiffness, damping = support_stiffness + film_stiffness, support_damping + film_damping
-    if not stiffness > 0:
-        raise ValueError("support_stiffness + film_stiffness must be positive for a closed-form threshold")
-    if not damping > 0:
-        raise ValueError("support_damping + film_damping must be positive for a closed-form threshold")
-    return stiffness, damping
+def _together(support: float, film: float, name: str) -> float:
+    """K or D, checked."""
+    if not support + film > 0:
+        raise ValueError(f"support_{name} + film_{name} must be positive for a closed-form threshold")
+    return support + film
 
 
 def fms_whirl_ratio(*, support_damping: float, film_damping: float) -> float:
@@ -253,7 +197,7 @@ def fms_whirl_ratio(*, support_damping: float, film_damping: float) -> float:
     **Source** Green and Etsion (1985): `(D_f / 2) / (D_s + D_f)`; at most one half.  **Valid** D > 0.
     **Raises** ValueError otherwise.
     """
-    return film_damping / 2 / _totals(1.0, support_damping, 0.0, film_damping)[1]
+    return film_damping / 2 / _together(support_damping, film_damping, "damping")
 
 
 def fmr_whirl_ratio(*, support_damping: float, film_damping: float) -> float:
@@ -263,7 +207,7 @@ def fmr_whirl_ratio(*, support_damping: float, film_damping: float) -> float:
     **Source** Green (1989): `(D_s + D_f / 2) / (D_s + D_f)`; at least one half, because the support turns.
     **Valid** D > 0.  **Raises** ValueError otherwise.
     """
-    return (support_damping + film_damping / 2) / _totals(1.0, support_damping, 0.0, film_damping)[1]
+    return (support_damping + film_damping / 2) / _together(support_damping, film_damping, "damping")
 
 
 def unconditional_inertia_ratio(*, support_damping: float, film_damping: float) -> float:
@@ -290,7 +234,7 @@ def fms_critical_speed(
     so that one set of numbers serves both seals, and not used.  Keywords as the module.
     **Valid** K > 0, D > 0 (ValueError), linear film whose coefficients do not change with speed.
     """
-    stiffness, _ = _totals(support_stiffness, support_damping, film_stiffness, film_damping)
+    stiffness = _together(support_stiffness, film_stiffness, "stiffness")
     whirl_ratio = fms_whirl_ratio(support_damping=support_damping, film_damping=film_damping)
     if transverse_inertia == 0 or whirl_ratio == 0:
         return None
@@ -313,16 +257,11 @@ def fmr_critical_speed(
     formula and the eigenvalues give 8.684e3; K_f in place of K would give 8.399e3.
     **Valid** K > 0, D > 0 (ValueError), linear film whose coefficients do not change with speed.
     """
-    stiffness, _ = _totals(support_stiffness, support_damping, film_stiffness, film_damping)
+    stiffness = _together(support_stiffness, film_stiffness, "stiffness")
     whirl_ratio = fmr_whirl_ratio(support_damping=support_damping, film_damping=film_damping)
     # The gyroscopic moment stiffens forward whirl; a short disk outruns its own inertia for good.
     inertial = whirl_ratio * (whirl_ratio * transverse_inertia - polar_inertia)
     return math.sqrt(stiffness / inertial) if inertial > 0 else None
-
-
-def axial_mode_stable(*, support_stiffness: float, film_stiffness: float) -> bool:
-    """Whether the aligned ring returns axially: `K_z + K_fz > 0`, both in N/m.  **Valid** linear, damped."""
-    return support_stiffness + film_stiffness > 0
 
 
 # --- Flow regime --------------------------------------------------------------------------------------

@@ -3,7 +3,7 @@ rows that disagree are named with their size."""
 
 import numpy as np
 import pytest
-from oracles import tilt_roots
+from oracles import contact_tilt, tilt_roots
 from scipy.optimize import brentq
 
 from sealdyn import closed_form
@@ -11,8 +11,6 @@ from sealdyn.closed_form import (
     GREEN_1989,
     GREEN_1989_ROUNDED,
     GREEN_1989_SEAL,
-    axial_mode_stable,
-    contact_tilt,
     critical_forcing,
     film_coefficients,
     fmr_critical_speed,
@@ -113,11 +111,6 @@ def test_formulas_refuse_what_they_cannot_answer(wrong):
     for law in (fms_critical_speed, fmr_critical_speed):
         with pytest.raises(ValueError, match="must be positive"):
             law(**REFERENCE | {"polar_inertia": 1e-4} | wrong)
-
-
-def test_axial_mode():
-    assert axial_mode_stable(support_stiffness=5e5, film_stiffness=-4e5)
-    assert not axial_mode_stable(support_stiffness=5e5, film_stiffness=-5e5)
 
 
 FILM = ("inner_radius", "outer_radius", "clearance", "coning", "viscosity", "pressure_drop")

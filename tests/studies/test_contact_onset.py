@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from oracles import contact_tilt
 from scenes import started
 
 import sealdyn
@@ -52,7 +53,7 @@ def test_linear_onset_is_the_formula(found):
     numbers = dict(speed=1000.0, transverse_inertia=ring.transverse_inertia, polar_inertia=ring.polar_inertia,
                    support_stiffness=stiffness, support_damping=damping, film_stiffness=c.tilt_stiffness,
                    film_damping=c.tilt_damping)  # fmt: skip
-    tilt = cf.contact_tilt(**faces)
+    tilt = contact_tilt(**faces)
     if arrangement == "fms":
         expected = cf.critical_forcing(tilt, 0.0, cf.fms_dynamic(**numbers))
     else:
@@ -147,7 +148,7 @@ def test_an_onset_beyond_any_small_tilt_is_an_answer(tmp_path):
     numbers = dict(speed=2950 * np.pi / 30, transverse_inertia=5e-5, polar_inertia=0.0,
                    support_stiffness=3e4 * 0.027**2 / 2, support_damping=50 * 0.027**2 / 2,
                    film_stiffness=c.tilt_stiffness, film_damping=c.tilt_damping)  # fmt: skip
-    expected = cf.contact_tilt(**faces) / cf.fms_dynamic(**numbers)
+    expected = contact_tilt(**faces) / cf.fms_dynamic(**numbers)
     assert answer["formula"] == pytest.approx(expected, rel=1e-5) and expected > 0.5
     assert answer["status"] == "ok" and answer["nonlinear"] is None and answer["beyond_tilt"] < answer["formula"]
     assert "path" not in answer and answer["times_own"] == pytest.approx(answer["formula"] * 0.060 / 20e-6)
