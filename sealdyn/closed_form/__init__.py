@@ -7,8 +7,6 @@ film thickness at the inner radius of the aligned seal, `h = clearance + coning 
 is outer minus inner pressure.
 """
 
-from typing import TYPE_CHECKING
-
 from .film import (
     FilmCoefficients,
     film_coefficients,
@@ -35,32 +33,13 @@ from .tilting_ring import (
     unconditional_inertia_ratio,
 )
 
-if TYPE_CHECKING:
-    from .green_1989 import (
-        GREEN_1989,
-        GREEN_1989_ROUNDED,
-        GREEN_1989_SEAL,
-        Published,
-        axial_groups,
-        film_groups,
-        green_1989_tilt,
-        ring_groups,
-        seal_parameter,
-    )
-
 __all__ = [
-    "GREEN_1989",
-    "GREEN_1989_ROUNDED",
-    "GREEN_1989_SEAL",
     "FilmCoefficients",
-    "Published",
     "TiltingRing",
-    "axial_groups",
     "centrifugal_pressure",
     "couette_reynolds",
     "critical_forcing",
     "film_coefficients",
-    "film_groups",
     "fmr_critical_speed",
     "fmr_dynamic",
     "fmr_static",
@@ -70,22 +49,10 @@ __all__ = [
     "fms_static",
     "fms_whirl_ratio",
     "fmsr_relative_tilts",
-    "green_1989_tilt",
     "narrow_seal_opening_force",
     "optimum_coning",
     "poiseuille_reynolds",
     "radial_film_coefficients",
-    "ring_groups",
-    "seal_parameter",
     "superposed",
     "unconditional_inertia_ratio",
 ]
-
-
-def __getattr__(name: str):
-    """Green's groups and numbers, of which a run needs none."""
-    if name not in __all__:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from . import green_1989
-
-    return getattr(green_1989, name)

@@ -5,11 +5,11 @@ import numpy as np
 import pytest
 
 from sealdyn.closed_form import (
-    GREEN_1989_SEAL,
     film_coefficients,
     narrow_seal_opening_force,
     radial_film_coefficients,
 )
+from sealdyn.closed_form.green_1989 import GREEN_1989_SEAL
 
 FACE = ("inner_radius", "outer_radius", "clearance", "coning")
 REFERENCE = {name: GREEN_1989_SEAL[name] for name in (*FACE, "viscosity", "pressure_drop")}

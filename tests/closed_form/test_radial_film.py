@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from sealdyn.closed_form import GREEN_1989_SEAL, radial_film_coefficients
+from sealdyn.closed_form import radial_film_coefficients
+from sealdyn.closed_form.green_1989 import GREEN_1989_SEAL
 
 FACE = ("inner_radius", "outer_radius", "clearance", "coning")
 REFERENCE = {name: GREEN_1989_SEAL[name] for name in (*FACE, "viscosity", "pressure_drop")}

@@ -8,19 +8,16 @@ from scipy.optimize import brentq
 
 from sealdyn import closed_form
 from sealdyn.closed_form import (
-    GREEN_1989,
-    GREEN_1989_ROUNDED,
-    GREEN_1989_SEAL,
     critical_forcing,
     film_coefficients,
     fmr_critical_speed,
     fmr_whirl_ratio,
     fms_critical_speed,
     fms_whirl_ratio,
-    green_1989_tilt,
     superposed,
     unconditional_inertia_ratio,
 )
+from sealdyn.closed_form.green_1989 import GREEN_1989, GREEN_1989_ROUNDED, GREEN_1989_SEAL, green_1989_tilt
 
 REFERENCE = {"support_stiffness": 400.0, "support_damping": 0.24}
 REFERENCE |= {"film_stiffness": 5790.5836, "film_damping": 4.0820736, "transverse_inertia": 8e-4}

@@ -318,7 +318,7 @@ def test_a_wrong_formula_fails(wrong, monkeypatch):
     """One per cent off in one road: its row fails."""
     right = getattr(closed_form, wrong)
     monkeypatch.setattr(green_1989.cf, wrong, lambda **numbers: 1.01 * right(**numbers))
-    monkeypatch.setattr(green_1989.cf, "GREEN_1989", [closed_form.GREEN_1989[WRONG[wrong]]])
+    monkeypatch.setattr(green_1989, "GREEN_1989", [green_1989.GREEN_1989[WRONG[wrong]]])
     (row,) = green_1989.checks()
     assert row["quantity"].startswith(wrong[4:]) and row["arrangement"] == wrong[:3].upper()
     assert row["verdict"] == "FAILED" and row["remark"] == "the three methods disagree"

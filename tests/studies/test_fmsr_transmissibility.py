@@ -8,7 +8,7 @@ from in_process import InProcess
 from oracles import tilt_roots, tilts_in_turning_axes
 
 from sealdyn import read_scenario
-from sealdyn.closed_form import GREEN_1989_ROUNDED
+from sealdyn.closed_form.green_1989 import GREEN_1989_ROUNDED
 from sealdyn.scene.scene import arrangement, counterpart, with_both_flexible_rings
 from sealdyn.studies import transmissibility
 from sealdyn.studies.transmissibility import Settings

@@ -9,7 +9,8 @@ from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
 
 from sealdyn import read_scenario
-from sealdyn.closed_form import GREEN_1989_ROUNDED, film_coefficients, optimum_coning
+from sealdyn.closed_form import film_coefficients, optimum_coning
+from sealdyn.closed_form.green_1989 import GREEN_1989_ROUNDED
 from sealdyn.studies import transmissibility
 from sealdyn.studies.transmissibility import Settings
 

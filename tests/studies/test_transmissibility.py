@@ -10,7 +10,7 @@ from scenes import BARRIER, started
 from scipy.optimize import brentq
 
 from sealdyn import read_scenario
-from sealdyn.closed_form import GREEN_1989
+from sealdyn.closed_form.green_1989 import GREEN_1989
 from sealdyn.dynamics.model import Model
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.scene.scene import counterpart, frozen_at_start, with_single_flexible_ring

@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from ... import closed_form as cf
+from ...closed_form.green_1989 import GREEN_1989, GREEN_1989_SEAL, green_1989_tilt
 from ...dynamics.model import Model
 from ...dynamics.run_state import RunState
 from ...scene.excitation import Shaft
@@ -46,7 +47,7 @@ def reference_scene(arrangement: str, inertia_ratio: float = 0.5, fixed: float =
     `inertia_ratio` I/J; `fixed` and `turning` are the misalignments (rad) at rest in space (stator's) and turning with
     the shaft (rotor's); `speed` (rad/s, default his).
     """
-    seal = cf.GREEN_1989_SEAL
+    seal = GREEN_1989_SEAL
     support = Support(
         axial_stiffness=seal["axial_support_stiffness"],
         axial_damping=seal["axial_support_damping"],
@@ -76,11 +77,11 @@ def reference_scene(arrangement: str, inertia_ratio: float = 0.5, fixed: float =
 
 def _formula_numbers(c: float) -> dict[str, float]:
     """What the formulas are fed with."""
-    seal = cf.GREEN_1989_SEAL
+    seal = GREEN_1989_SEAL
     film = cf.film_coefficients(
         **{k: seal[k] for k in ("inner_radius", "outer_radius", "clearance", "coning", "viscosity", "pressure_drop")}
     )
-    return cf.green_1989_tilt(film.tilt_stiffness, film.tilt_damping, c)
+    return green_1989_tilt(film.tilt_stiffness, film.tilt_damping, c)
 
 
 def _responses(arrangement: str, c: float) -> dict[str, tuple[float, float, float]]:
@@ -100,7 +101,7 @@ def _responses(arrangement: str, c: float) -> dict[str, tuple[float, float, floa
         time_domain.append(run.extrema.records[1, 4] / unit)
     formula.append(sum(formula))
     rows = [formula, algebra, time_domain]
-    radius_ratio = cf.GREEN_1989_SEAL["inner_radius"] / cf.GREEN_1989_SEAL["outer_radius"]
+    radius_ratio = GREEN_1989_SEAL["inner_radius"] / GREEN_1989_SEAL["outer_radius"]
     # In units of C/r_o: the faces touch at 1/R; the ring's own misalignment is the FMR's turning one, the
     # FMS's critical forcing is its runout.
     for row in rows:
@@ -137,7 +138,7 @@ def checks() -> list[dict]:
     """Every row of the table: besides what every source has arrangement, inertia_ratio and the three methods, formula,
     linear_algebra and time_domain; "agrees" is within one unit of the last printed digit."""
     cases, rows = {}, []
-    for entry in cf.GREEN_1989:
+    for entry in GREEN_1989:
         c = entry.inertia_ratio or 0.5
         key = (entry.arrangement, c)
         if key not in cases:

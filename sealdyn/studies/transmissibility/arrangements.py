@@ -10,6 +10,7 @@ from itertools import pairwise
 import numpy as np
 
 from ... import closed_form as cf
+from ...closed_form.green_1989 import axial_groups, film_groups, ring_groups
 from ...dynamics import modes
 from ...dynamics.equilibrium import axial_shift
 from ...dynamics.extrema import MOST
@@ -202,13 +203,13 @@ def groups(seals: dict[str, Arrangement], speed: float) -> dict:
     stiffness, damping = (float(v) for v in seal.film_numbers(speed))
     drop = film.outer_pressure - film.inner_pressure
     coefficients = {"film_stiffness": stiffness, "film_damping": damping}
-    found = cf.film_groups(**face, coning=film.coning, pressure_drop=drop, **coefficients)
+    found = film_groups(**face, coning=film.coning, pressure_drop=drop, **coefficients)
     linear = seal.linear(speed)
-    found["axial"] = {"film": cf.axial_groups(**face, stiffness=linear.film_k[0, 0], damping=linear.film_d[0, 0])}
+    found["axial"] = {"film": axial_groups(**face, stiffness=linear.film_k[0, 0], damping=linear.film_d[0, 0])}
     for name, ring in (("rotor", seal.scene.rotor), ("stator", seal.scene.stator)):
         axial = dict(mass=ring.mass, stiffness=ring.support.axial_stiffness, damping=ring.support.axial_damping)
-        found["axial"][name] = cf.axial_groups(**face, **axial)
-        found[name] = cf.ring_groups(**face, **tilting(ring)._asdict())
+        found["axial"][name] = axial_groups(**face, **axial)
+        found[name] = ring_groups(**face, **tilting(ring)._asdict())
         if not np.isfinite(found[name]["inertia_ratio"]):
             found[name]["inertia_ratio"] = None
     return found
