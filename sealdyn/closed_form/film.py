@@ -9,7 +9,7 @@ pressures (Pa).  Of grooves
     liquid   p' = 12 mu [ w r K2/K1 - Q/(2 pi r K1) ]          gas   K1 p p' = 12 mu [ w r K2 p - Q/(2 pi r) ]
 
 h_g, h_l films of groove and land (m), b the groove's share of the pitch, a its angle to the circle (positive where its
-radius grows with the angle), w the entrainment in the frame of the grooves (rad/s; faces/pattern.py `turning`), Q the
+radius grows with the angle), w the entrainment in the frame of the grooves (rad/s), Q the
 flow outwards (liquid m^3/s, gas Pa m^3/s).
 **Source** of grooves: Muijderman (1964); Malanoski & Pan (1965), J. Basic Eng. 87, 547; derived here.  In coordinates n
 across and s along the edges the flow q_n and the gradient p_s are the same in groove and land.  With q = -h^3 grad

@@ -302,8 +302,8 @@ def wear_rates(k, f, s, out):
     """Where the load of faces with a profile rubs: `out[j] = int p_c r phi_j dA` (N m) for each of its radii, phi_j the
     hat function of radius j (1 there, 0 at the others, linear between), shape (radii,).
 
-    The depth of a face grows at radius j by its wear coefficient times |SPIN_DIFFERENCE| times out[j] over
-    `hat_areas`[j]; the sum of `out` is the integral that WEAR has.
+    The depth of a face grows at radius j by its wear coefficient times |SPIN_DIFFERENCE| times out[j] over the area
+    int phi_j dA; the sum of `out` is the integral that WEAR has.
     **Source** Archard's law, as the module.
     """
     out[:] = 0.0
@@ -318,17 +318,6 @@ def wear_rates(k, f, s, out):
         share = outwards / (r_o - r_i)
         out[node] += arm - share
         out[node + 1] += share
-
-
-def hat_areas(face) -> np.ndarray:
-    """Areas `int phi_j dA` (m^2) of the hat functions of a profile's radii, shape (radii,); with a depth that is linear
-    between them the volume worn off is the sum of depth times area.  `face` the leading slots of a film's block."""
-    count = int(face[PROFILE])
-    r = face[PROFILE_RADII : PROFILE_RADII + count]
-    areas, width = np.zeros(count), np.diff(r)
-    areas[:-1] += math.pi / 3.0 * width * (2.0 * r[:-1] + r[1:])
-    areas[1:] += math.pi / 3.0 * width * (r[:-1] + 2.0 * r[1:])
-    return areas
 
 
 def lay_surfaces(f, scene) -> np.ndarray | None:

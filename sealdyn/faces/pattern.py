@@ -107,11 +107,6 @@ class Boxes:
         return Edges(tuple(radii), tuple(angles) or (self.phase,), 0.0, (radii[0], radii[-1]))
 
 
-def tee(count, depth, arms: Box, stem: Box, phase=0.0) -> Boxes:
-    """T-grooves: arms and the stem that feeds them."""
-    return Boxes(count, depth, (arms, stem), phase)
-
-
 @dataclass(frozen=True)
 class Dimples:
     """Elliptic dimples with their centres at a `radius` (m), `length` and `width` their whole axes (m), the long one at
@@ -159,28 +154,9 @@ class Dimples:
 Pattern = Spiral | Boxes | Dimples
 
 
-def depth(patterns: tuple[Pattern, ...], r, phi) -> np.ndarray:
-    """By how much (m) patterns of one face widen the film at radii r (m) and angles phi (rad), which broadcast: the
-    deepest where they overlap, 0 on the lands."""
-    deepest = np.zeros(np.broadcast_shapes(np.shape(r), np.shape(phi)))
-    for pattern in patterns:
-        deepest = np.maximum(deepest, pattern.depth_at(r, phi))
-    return deepest
-
-
-def turning(face: str, stator_speed: float, rotor_speed: float) -> tuple[float, float]:
-    """Speeds (rad/s) of a film in the frame of a patterned face, "rotor" or "stator": of the entrainment there, and of
-    that frame.
-
-    **Source** derived here: with phi = theta - W_p t, d/dt + (W_s + W_r)/2 d/dtheta becomes d/dt + wp d/dphi with
-    wp = (W_s + W_r)/2 - W_p, which is -(W_r - W_s)/2 for a patterned rotor and the opposite for a patterned stator."""
-    frame = {"rotor": rotor_speed, "stator": stator_speed}[face]
-    return 0.5 * (stator_speed + rotor_speed) - frame, frame
-
-
 def pumps(angle: float, entrainment: float) -> str:
-    """Which way spiral grooves at an `angle` (rad) pump under the entrainment of `turning`: "outwards", "inwards" or
-    "nowhere".
+    """Which way spiral grooves at an `angle` (rad) pump under an entrainment (rad/s) in their frame: "outwards",
+    "inwards" or "nowhere".
 
     **Source** derived here: grooves along e = (cos a, sin a) in (phi, ln r) drag along e the share wp cos a of the
     entrainment, whose radial part has the sign of wp sin a cos a."""

@@ -91,11 +91,11 @@ def section_weights(body: RingBody, edges: np.ndarray) -> tuple[np.ndarray, np.n
 def coning_by_temperature(body: RingBody, depths: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Coning (rad) by mean (per K) and by gradient (per K/m) of the temperature at `depths` (m), from 0 to the length
     and linear in between; each of the shape of `depths`."""
-    by = _influence(body)
-    shares = np.array([np.interp(by.points, depths, row) for row in np.eye(len(depths))]) * by.weights
+    points, weights, by_load, bent = _influence(body)
+    shares = np.array([np.interp(points, depths, row) for row in np.eye(len(depths))]) * weights
     bending = -_rigidity(body) * (1 + body.poisson) * body.expansion
     hoop = body.modulus * body.width / body.mean_radius * body.expansion
-    return hoop * shares @ by.by_load, bending * shares @ by.bent
+    return hoop * shares @ by_load, bending * shares @ bent
 
 
 def coning_by_bow(body: RingBody, edges: np.ndarray) -> np.ndarray:
@@ -109,30 +109,16 @@ def coning_by_bow(body: RingBody, edges: np.ndarray) -> np.ndarray:
     return (1 + body.poisson) * body.expansion / body.conductivity * ((over_band - over_all) @ beyond) * widths
 
 
-def crown(body: RingBody, flux: float) -> float:
-    """Height (m) of the band's edges beyond the fitted cone, over the heat (W/m^2) that flows into the band: of a
-    parabola kappa w^2/12."""
-    curvature = (1 + body.poisson) * body.expansion * flux / body.conductivity
-    return curvature * (body.face_outer_radius - body.face_inner_radius) ** 2 / 12
-
-
 def _rigidity(body: RingBody) -> float:
     """D (N m): bending stiffness of the section over its circumference."""
     return body.modulus * body.width**3 / (12 * (1 - body.poisson**2))
 
 
-class _Influence(NamedTuple):
-    """Coning by a radial load of 1 N/m per metre of circumference at `points` (m) along the length (rad), its second
-    derivative, and `weights` (m) of integrals over the points."""
+def _influence(body: RingBody) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Points (m) along the length and weights (m) of integrals over them; there the coning (rad) by a radial load of
+    1 N/m per metre of circumference, and its second derivative.
 
-    points: np.ndarray
-    weights: np.ndarray
-    by_load: np.ndarray
-    bent: np.ndarray
-
-
-def _influence(body: RingBody) -> _Influence:
-    """By reciprocity the shape of the beam under the load that works by -u'(0), from cubic Hermite elements."""
+    By reciprocity it is the shape of the beam under the load that works by -u'(0), from cubic Hermite elements."""
     size = body.length / ELEMENTS
     nodes, weights = np.polynomial.legendre.leggauss(4)
     s, weights = (nodes + 1) / 2, weights / 2
@@ -149,7 +135,7 @@ def _influence(body: RingBody) -> _Influence:
     own = np.stack([y[2 * k : 2 * k + 4] for k in range(ELEMENTS)])
     points = (np.arange(ELEMENTS)[:, None] + s) * size
     values, bent = (own @ shapes).ravel(), (own @ bends).ravel() / size**2
-    return _Influence(points.ravel(), np.tile(weights * size, ELEMENTS), values, bent)
+    return points.ravel(), np.tile(weights * size, ELEMENTS), values, bent
 
 
 RADIAL, AXIAL, GRADING = 24, 32, 1.5
@@ -201,8 +187,6 @@ class RingHeat:
     """Hottest place of the band over its mean rise, under even heat."""
     at_o_ring: float
     """Rise of the wetted side where the O-ring sits, over the mean rise of the band."""
-    crown_per_watt: float
-    """Height of the band's edges beyond its cone, m/W."""
     biot: float
     """Convection times width over conductivity."""
 
@@ -242,7 +226,6 @@ def ring_heat(body: RingBody) -> RingHeat:
         float(steady @ (ring.capacity * steady)) / resistance,
         hottest / resistance,
         _at_o_ring(body, ring, steady) / resistance,
-        crown(body, flux),
         body.convection * body.width / body.conductivity,
     )
 

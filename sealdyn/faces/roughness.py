@@ -1,4 +1,4 @@
-"""Rough faces at a mean film h: share in contact, mean film, the contact laws as polynomials, and their integrals
+"""Rough faces at a mean film h: share in contact, mean cube, the contact laws as polynomials, and their integrals
 over an annulus whose gap is linear in r and tilted.
 
 **Source** Lebeck, Teale & Pierce, ONR ME-95(79)ONR-414-1 (1979), ch. 2 (Christensen's polynomial heights);
@@ -37,17 +37,6 @@ def contact_fraction(x):
     """
     u = np.clip(0.5 * (1.0 - np.asarray(x, dtype=float)), 0.0, 1.0)
     return u**4 * (35.0 - u * (84.0 - u * (70.0 - 20.0 * u)))
-
-
-def mean_film(x):
-    """E(H)/c of the film between Christensen's surfaces at mean film h = x c; elementwise.  0 for x <= -1.
-
-    **Source** Lebeck et al. (1979), ch. 2: the mean of max(h + d, 0) over Christensen's heights d, here factored.
-    """
-    x = np.asarray(x, dtype=float)
-    u = np.clip(0.5 * (1.0 - x), 0.0, 1.0)
-    inside = x + 2.0 * u**5 * (7.0 - u * (14.0 - u * (10.0 - 2.5 * u)))
-    return np.where(x <= -1.0, 0.0, inside)
 
 
 def mean_film_cubed(x):

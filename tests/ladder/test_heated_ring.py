@@ -64,12 +64,10 @@ ROWS = {
 @pytest.mark.core
 @pytest.mark.parametrize("name", ROWS)
 def test_rows_of_an_independent_program(name):
-    ring, (resistance, coning, crown), volumes, within = ROWS[name]
+    ring, (resistance, coning, _), volumes, within = ROWS[name]
     found = ring_heat(ring)
     assert found.resistance == pytest.approx(resistance, rel=0.02)
     assert found.coning_per_watt == pytest.approx(coning, rel=within)
-    # Its crown is the height of what finite elements bow, a parabola the one that ours is.
-    assert found.crown_per_watt == pytest.approx(crown, rel=0.08)
     # Another division of radii into cells; its time constant is over the resistance of the cells alone.
     assert (found.resistance, found.coning_per_watt) == pytest.approx(volumes[:2], rel=5e-3)
     assert found.time_constant == pytest.approx(volumes[2], rel=0.02)
@@ -104,7 +102,6 @@ def test_other_rings_against_finite_elements(name):
     assert found.coning_per_watt == pytest.approx(expected.coning, abs=0.025 * whole)
     assert found.time_constant == pytest.approx(expected.time_constant, rel=0.01)
     assert found.hottest * found.resistance == pytest.approx(expected.hottest, rel=0.02)
-    assert found.crown_per_watt == pytest.approx(expected.crown, rel=0.15)
     assert found.at_o_ring * found.resistance == pytest.approx(expected.at_o_ring, rel=0.05)
 
 

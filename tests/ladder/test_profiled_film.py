@@ -11,6 +11,7 @@ from sealdyn.faces import contact, geometry
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scene.film import Profile
 from sealdyn.scene.forces import Contact
+from sealdyn.studies.wear.rosenbrock import HatBasis
 
 SCENARIO = """
 [shaft]
@@ -96,7 +97,7 @@ def test_wear_at_the_radii_is_the_wear_rate_of_the_run():
     """Sum of depth rate times hat area over the face: the mean wear rate, at every sample."""
     found = rubbing(1e-6)
     ready, out = found.ready, np.zeros(len(RADIUS))
-    areas, rates = contact.hat_areas(ready.model.face), []
+    areas, rates = HatBasis(RADIUS).areas, []
     for dz, x, y in zip(*(found[n] for n in ("axial_gap_change", "relative_tilt_x", "relative_tilt_y")), strict=True):
         s = np.zeros(geometry.GAP_STATE_SIZE)
         s[geometry.DZ], s[geometry.GX], s[geometry.GY] = dz, x, y

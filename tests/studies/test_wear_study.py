@@ -13,7 +13,6 @@ from scenes import fms, ring
 
 import sealdyn
 from sealdyn.archive import read_study
-from sealdyn.faces import contact
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.report.panels import draw
 from sealdyn.scenario.errors import ScenarioError
@@ -138,12 +137,6 @@ def test_faces_with_a_profile_wear_on_from_it(tmp_path):
 
 def _both(answer) -> list[float]:
     return (np.array(answer["profile"]["stator"][-1]) + np.array(answer["profile"]["rotor"][-1])).tolist()
-
-
-def test_kernel_s_hats_are_the_slow_scale_s():
-    runs = ShortRunAverages(pressed(), RADIUS)
-    ready = runs.run(np.zeros(17), 0.0)
-    assert contact.hat_areas(ready.model.face) == pytest.approx(HatBasis(RADIUS).areas, rel=1e-13, abs=0.0)
 
 
 def test_slope_of_faces_at_rest_is_that_of_their_averages():

@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from sealdyn.faces.pattern import Box, Boxes, Dimples, Spiral, depth, pumps, tee, turning
+from sealdyn.faces.pattern import Box, Boxes, Dimples, Spiral, pumps
 
 SPIRAL = Spiral(12, 0.0555, 0.0616, math.radians(15.0), 0.4, 6e-6, phase=0.2)
-TEE = tee(12, 6e-6, Box(0.0555, 0.0585, 0.7), Box(0.0585, 0.0616, 0.2), phase=0.1)
+TEE = Boxes(12, 6e-6, (Box(0.0555, 0.0585, 0.7), Box(0.0585, 0.0616, 0.2)), phase=0.1)
 DIMPLES = Dimples(20, 0.056, 3e-3, 1e-3, math.radians(30.0), 5e-6)
 RADII, ROUND = np.linspace(0.0516, 0.0616, 301)[:, None], np.linspace(0.0, 2.0 * math.pi, 24001)[:-1]
 
@@ -57,16 +57,7 @@ def test_a_dimple_has_the_area_of_its_ellipse():
     assert not DIMPLES.depth_at(0.056 * math.exp(along * sin), -along * cos)
 
 
-def test_the_deepest_counts_where_patterns_overlap():
-    both = depth((SPIRAL, DIMPLES), RADII, ROUND)
-    assert np.array_equal(both, np.maximum(SPIRAL.depth_at(RADII, ROUND), DIMPLES.depth_at(RADII, ROUND)))
-    assert set(np.unique(both)) == {0.0, 5e-6, 6e-6}
-
-
-def test_the_entrainment_in_the_frame_of_a_pattern_is_half_the_relative_speed():
-    """Counter-rotating or not; which way it pumps turns with the face and with the angle."""
-    for stator, rotor in ((0.0, 1000.0), (-400.0, 600.0), (300.0, 1300.0)):
-        assert turning("rotor", stator, rotor) == pytest.approx((-500.0, rotor))
-        assert turning("stator", stator, rotor) == pytest.approx((500.0, stator))
+def test_which_way_spirals_pump():
+    """It turns with the face and with the angle."""
     assert pumps(SPIRAL.angle, -500.0) == "inwards" == pumps(-SPIRAL.angle, 500.0)
     assert pumps(SPIRAL.angle, 500.0) == "outwards" and pumps(SPIRAL.angle, 0.0) == "nowhere"

@@ -209,17 +209,6 @@ def test_turning_the_tilt_turns_the_moment(shape):
             assert wear_integrals(f, (at[0], tilt.real, tilt.imag)) == pytest.approx(worn, rel=1e-10, abs=1e-300)
 
 
-@pytest.mark.core
-@bent
-def test_hat_areas(shape):
-    """They sum to the face, and weigh a depth to its volume."""
-    areas = contact.hat_areas(face(shape))
-    assert np.sum(areas) == pytest.approx(np.pi * (R_O**2 - R_I**2), rel=1e-14)
-    depth = lambda x: depth_at(shape, x) * 2 * np.pi * x  # noqa: E731
-    volume = sum(quad(depth, *ends, epsrel=1e-13, epsabs=0)[0] for ends in pairwise(shape[0]))
-    assert np.sum(areas * shape[1]) == pytest.approx(volume, rel=1e-12)
-
-
 def test_above_touch_nothing_wears():
     f = face(BENT["middle"])
     at = (C * 1.0001 - C0, 0.0, 0.0)
@@ -229,7 +218,7 @@ def test_above_touch_nothing_wears():
 def test_65_radii_fit():
     r = np.linspace(R_I, R_O, 65)
     f = face((r, 1e-6 * np.sin(400 * r)))
-    assert len(contact.hat_areas(f)) == 65 and f[geometry.PROFILE_RADII + 64] == R_O
+    assert f[geometry.PROFILE] == 65 and f[geometry.PROFILE_RADII + 64] == R_O
     with pytest.raises(ValueError):
         r = np.linspace(R_I, R_O, 66)
         face((r, 0 * r))

@@ -12,7 +12,7 @@ from importlib.resources import files
 import numpy as np
 
 from ...closed_form.film import GroovedFace, narrow_groove_gas, narrow_groove_liquid
-from ...faces.pattern import Box, Boxes, Spiral, tee
+from ...faces.pattern import Box, Boxes, Spiral
 from ...films._grooved.balance import Conditions, extrapolated, steady_pair
 from ...films._grooved.motion import Motion
 
@@ -28,7 +28,7 @@ LEAST = {"axial": 4e-3, "tilt": 4e-3, "outflow": 5e-3}
 # Counts of grooves whose ratios to the theory are extrapolated in 1/count, by a polynomial, and what is left.
 COUNTS, NARROW_TOLERANCE = (48, 96, 192), 6e-3
 OF_STIFFNESS = "judged as a share of the stiffness at that frequency"
-TEE = tee(12, 6e-6, Box(0.0555, 0.0585, 0.7), Box(0.0585, 0.0616, 0.2))
+TEE = Boxes(12, 6e-6, (Box(0.0555, 0.0585, 0.7), Box(0.0585, 0.0616, 0.2)))
 
 
 def grooved_rows() -> dict[str, dict]:

@@ -11,7 +11,7 @@ import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from ...faces.pattern import Box, Boxes, Dimples, Pattern, Spiral, pumps, tee
+from ...faces.pattern import Box, Boxes, Dimples, Pattern, Spiral, pumps
 from ...numerics.piecewise_linear import initially
 from ...scene.film import coned
 from ...scene.fluid import GasReynolds, gas_of, viscosity_of
@@ -37,7 +37,7 @@ def pattern_of(one: Grooves) -> Pattern:
     if one.shape == "pad":
         return Boxes(one.count, one.depth, (arms,), one.phase)
     stem = Box(one.outer_radius, one.stem_outer_radius, one.stem_share)
-    return tee(one.count, one.depth, arms, stem, one.phase)
+    return Boxes(one.count, one.depth, (arms, stem), one.phase)
 
 
 def cavity_of(film) -> float | None:

@@ -2,7 +2,7 @@
 
     r^2 d(p h)/dt + d/du(-k p_u) + d/dphi(-k p_phi + w r^2 p h) = 0,    u = ln r, k = h^3 p/(12 mu)      (gas)
 
-and without p in p h and k of a liquid.  w is the entrainment in that frame (faces/pattern.py `turning`).  Pressures are
+and without p in p h and k of a liquid.  w is the entrainment in that frame.  Pressures are
 linear between nodes, each triangle has its own film; what leaves the median cell of node i through triangle t, of area
 A in (u, phi), is
 
@@ -51,7 +51,10 @@ class Conditions:
 
     @property
     def entrainment(self) -> float:
-        """In the frame of the pattern (rad/s)."""
+        """In the frame of the pattern (rad/s).
+
+        **Source** derived here: with phi = theta - W_p t, d/dt + (W_s + W_r)/2 d/dtheta becomes d/dt + w d/dphi with
+        w = (W_s + W_r)/2 - W_p, which is -(W_r - W_s)/2 for a patterned rotor and the opposite for a stator."""
         return (-0.5 if self.face == "rotor" else 0.5) * self.relative_speed
 
     def lands(self, beyond) -> np.ndarray:
