@@ -21,10 +21,11 @@ from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.run_state import RunState
 from sealdyn.faces.film_thickness import lay_waves
 from sealdyn.faces.geometry import DZ
+from sealdyn.films._cells_around import place, room
 from sealdyn.films.reynolds import film as reynolds
 from sealdyn.films.reynolds import pressure
 from sealdyn.films.reynolds.mesh import films
-from sealdyn.films.reynolds.pressure import lay_out, place, room
+from sealdyn.films.reynolds.pressure import lay_out
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.scene.film import Reynolds
 from sealdyn.solvers.contract import Counts, SolverFailure

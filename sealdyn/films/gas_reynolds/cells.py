@@ -22,8 +22,7 @@ for tilt, without upwinding: x is smooth there, for nothing holds its pressure a
 difference damps would be taken for damping of the film.  Below zero, where a solver may try, p |p| stands for p^2, so
 that pressure differences always even out.  Second order in the cells.
 
-Of the steady pressures at a gap state, by Newton's method, angles are taken up from both sides of the first one in
-turn, 0, 1, -1, 2, ...: neighbours on the circle are at most two apart, so that elimination stays in a band.
+The steady pressures at a gap state are found by Newton's method.
 """
 
 import math
@@ -58,6 +57,7 @@ from ...numerics.kernel import inner_kernel, outer_kernel, value_kernel
 from ...numerics.piecewise_linear import points
 from ...scene.film import depth_of
 from ...scene.fluid import GasReynolds, gas_of
+from .._cells_around import AFTER, BEFORE, INNER, OUTER, OWN, eliminate, neighbours, place, room
 
 # Block after the faces: cells over the radius, angles, scale of an unknown (Pa m), what slip adds to the flow at a
 # temperature of 1 K (m/s, 0 without), and the steps of differences around the circle: 2 sin(d_theta) of a slope,
@@ -190,10 +190,6 @@ def thickness_rates(f, s, h, rates):
             rates[k, j] = slope * (aligned + coned + arm[j + 1] * tilting)
 
 
-# What the balance of a cell has of its unknown and of its neighbours' at the same angle and at the same radius.
-OWN, INNER, OUTER, BEFORE, AFTER = range(5)
-
-
 @inner_kernel()
 def _through(h_a, h_b):
     """h^3 (m^3) of a film that is linear between two thicknesses, as a flow through it sees it: 1 over the mean of
@@ -231,7 +227,7 @@ def _ways_around(f, s, h, ways, slips):
     slip /= f[CURVATURE_STEP]
     angles, cells = ways.shape
     for k in range(angles):
-        after = k + 1 if k < angles - 1 else 0
+        _, after = neighbours(k, angles)
         for j in range(cells):
             h_a, h_b = h[k, j + 1], h[after, j + 1]
             ways[k, j], slips[k, j] = per * around[j] * _through(h_a, h_b), slip * around[j] * h_a * h_b
@@ -270,7 +266,7 @@ def rates(f, s, x, h, p, ways, slips, ways_around, slips_around, out):
     angles, cells = int(f[ANGLES]), int(f[CELLS])
     area, turning = table(f, CORE), s[MEAN_SPIN] / f[SLOPE_STEP]
     for k in range(angles):
-        after, before = k + 1 if k < angles - 1 else 0, k - 1 if k > 0 else angles - 1
+        before, after = neighbours(k, angles)
         arriving = between(p[k, 0], p[k, 1], ways[k, 0], slips[k, 0])
         for j in range(cells):
             here = p[k, j + 1]
@@ -290,7 +286,7 @@ def slopes(f, s, h, p, ways, slips, ways_around, slips_around, out):
     angles, cells = int(f[ANGLES]), int(f[CELLS])
     area, turning = table(f, CORE), s[MEAN_SPIN] / f[SLOPE_STEP]
     for k in range(angles):
-        after, before = k + 1 if k < angles - 1 else 0, k - 1 if k > 0 else angles - 1
+        before, after = neighbours(k, angles)
         for j in range(cells):
             here, inside, outside = p[k, j + 1], p[k, j], p[k, j + 2]
             row, per = out[k * cells + j], 1.0 / area[j]
@@ -327,7 +323,7 @@ def jacobian(f, s, x, x_rate, alpha, data):
     rows, at = np.empty((angles * cells, 5)), 0
     slopes(f, s, *state(f, s, x), rows)
     for k in range(angles):
-        after, before = k + 1 if k < angles - 1 else 0, k - 1 if k > 0 else angles - 1
+        before, after = neighbours(k, angles)
         for j in range(cells):
             i = k * cells + j
             # The angle next door may lie at the other end of the list.
@@ -355,35 +351,6 @@ UNSOLVED = 1
 
 
 @inner_kernel()
-def _place(k, angles):
-    """Place in the band of angle k."""
-    return 2 * k - 1 if 0 < k <= angles // 2 else 2 * (angles - k) % (2 * angles)
-
-
-@inner_kernel()
-def _eliminate(band, y):
-    """Solve with a band matrix (n, 2 width + 1), its diagonal in the middle, and `y` (n,), both of which it spoils; the
-    solution is left in `y`.  Returns whether all pivots are numbers other than 0."""
-    n, width = band.shape[0], band.shape[1] // 2
-    for i in range(n):
-        pivot = band[i, width]
-        if not abs(pivot) > 0.0:
-            return False
-        last = min(width, n - 1 - i)
-        for down in range(1, last + 1):
-            share = band[i + down, width - down] / pivot
-            if share != 0.0:
-                for across in range(1, last + 1):
-                    band[i + down, width - down + across] -= share * band[i, width + across]
-                y[i + down] -= share * y[i]
-    for i in range(n - 1, -1, -1):
-        for across in range(1, min(width, n - 1 - i) + 1):
-            y[i] -= band[i, width + across] * y[i + across]
-        y[i] /= band[i, width]
-    return True
-
-
-@inner_kernel()
 def _first(f, s, x):
     """Pressures of a flow over the radius alone between still faces: p^2 falls with the way."""
     angles, cells = int(f[ANGLES]), int(f[CELLS])
@@ -401,13 +368,13 @@ def start(f, s, x):
     """Unknowns `x` (n,) of the steady film at a gap state: p h_t + wm d(p h)/dtheta = what flows in.  A film that opens
     so fast that it would be drawn empty keeps the least pressure.  Returns 0, or a code where none is found."""
     angles, cells = int(f[ANGLES]), int(f[CELLS])
-    n, width = angles * cells, 2 * cells
     x[:] = 0.0
     _first(f, s, x)
     h, h_rate = np.empty((angles, cells + 2)), np.empty((angles, cells))
     thicknesses(f, s, h, np.empty(angles))
     thickness_rates(f, s, h, h_rate)
-    left, rows, band, y = np.empty(n), np.empty((n, 5)), np.empty((n, 2 * width + 1)), np.empty(n)
+    left, rows, (band, y) = np.empty(len(x)), np.empty((len(x), 5)), room(angles, cells)
+    width = band.shape[1] // 2
     far, strayed, low = True, False, min(s[INNER_PRESSURE], s[OUTER_PRESSURE])
     for _ in range(MOST_STEPS):
         now = state(f, s, x)
@@ -417,8 +384,9 @@ def start(f, s, x):
         slopes(f, s, h, np.maximum(p, SLOPED * low), ways, slips, ways_around, slips_around, rows)
         band[:] = 0.0
         for k in range(angles):
-            here = _place(k, angles) * cells
-            after, before = _place((k + 1) % angles, angles) * cells, _place((k - 1) % angles, angles) * cells
+            before, after = neighbours(k, angles)
+            here = place(k, angles) * cells
+            to_before, to_after = place(before, angles) * cells - here, place(after, angles) * cells - here
             for j in range(cells):
                 i, at = k * cells + j, here + j
                 squeezed = h_rate[k, j] / h[k, j + 1]
@@ -429,15 +397,15 @@ def start(f, s, x):
                     band[at, width - 1] -= rows[i, INNER]
                 if j < cells - 1:
                     band[at, width + 1] -= rows[i, OUTER]
-                band[at, width + after - here] -= rows[i, AFTER]
-                band[at, width + before - here] -= rows[i, BEFORE]
-        if not _eliminate(band, y):
+                band[at, width + to_after] -= rows[i, AFTER]
+                band[at, width + to_before] -= rows[i, BEFORE]
+        if not eliminate(band, y):
             return UNSOLVED
         change = highest = 0.0
         for k in range(angles):
             for j in range(cells):
                 i, before = k * cells + j, x[k * cells + j]
-                x[i] = max(before + y[_place(k, angles) * cells + j], NEAREST * before, LEAST * low * h[k, j + 1])
+                x[i] = max(before + y[place(k, angles) * cells + j], NEAREST * before, LEAST * low * h[k, j + 1])
                 change = max(change, abs(x[i] - before) / h[k, j + 1])
                 highest = max(highest, x[i] / h[k, j + 1])
         if not change < np.inf:

@@ -33,6 +33,7 @@ from ...faces.geometry import (
 from ...numerics.kernel import inner_kernel, outer_kernel, value_kernel
 from ...numerics.piecewise_linear import initially
 from ...scene.fluid import NORMAL_PRESSURE, NORMAL_TEMPERATURE, GasReynolds, viscosity_of
+from .._cells_around import balances
 from .._contract import PRESSURE, Film, FilmUnknowns, force_over_clearance
 from . import OFFER
 from .cells import (
@@ -72,11 +73,7 @@ def accepts(film, waves=()) -> str:
 def unknowns(f) -> FilmUnknowns:
     """Products p h of the cells (Pa m), angle by angle, all with rates."""
     cells, angles = int(f[CELLS]), int(f[ANGLES])
-    n = cells * angles
-    own = np.arange(n)
-    inner, outer = own[own % cells > 0], own[own % cells < cells - 1]
-    rows = np.concatenate([own, inner - 1, outer + 1, (own - cells) % n, (own + cells) % n])
-    columns = np.concatenate([own, inner, outer, own, own])
+    n, (rows, columns) = cells * angles, balances(cells, angles)
     pattern = csc_array((np.ones(len(rows)), (rows, columns)), shape=(n, n))
     pattern.sort_indices()
     names = tuple(f"gas_{angle}_{cell}" for angle in range(angles) for cell in range(cells))

@@ -16,24 +16,20 @@ from scipy.sparse import csc_array
 
 from ...faces.geometry import INNER_PRESSURE, MEAN_SPIN, OUTER_PRESSURE, SPIN_DIFFERENCE
 from ...numerics.kernel import inner_kernel, value_kernel
+from .._cells_around import AFTER, BEFORE, INNER, OUTER, OWN, balances, neighbours
 from .mesh import ANGLE_STEP, ANGLES, AREA, CAVITATES, CAVITATION, CELLS, PACE, SCALE, films, stored_rates, table
-from .pressure import neighbours, split
+from .pressure import split
 
 # The least pace (1/s) of faces that counts in bringing full cells back to their volume.
 SLOWEST = 1.0 / 3.0
 # Pressures less than this share of the scale are rounding of a cell that is just full.
 DRIEST = 1e-10
-# What a balance has of its own unknown and of its neighbours', at the same angle and at the same radius.
-OWN, INNER, OUTER, BEFORE, AFTER = range(5)
 
 
 def pattern(cells: int, angles: int) -> csc_array:
     """Where the rows of `residual` may hang on the unknowns, (2 n, 2 n)."""
     n = cells * angles
-    own = np.arange(n)
-    inner, outer = own[own % cells > 0], own[own % cells < cells - 1]
-    near = np.concatenate([own, inner - 1, outer + 1, (own - cells) % n, (own + cells) % n])
-    of = np.concatenate([own, inner, outer, own, own])
+    own, (near, of) = np.arange(n), balances(cells, angles)
     rows, columns = np.concatenate([near, n + near, own, n + own]), np.concatenate([of, of, n + own, n + own])
     found = csc_array((np.ones(len(rows)), (rows, columns)), shape=(2 * n, 2 * n))
     found.sum_duplicates()

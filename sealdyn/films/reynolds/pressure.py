@@ -37,6 +37,7 @@ from ...faces.geometry import (
     VISCOSITY,
 )
 from ...numerics.kernel import inner_kernel, outer_kernel, value_kernel
+from .._cells_around import eliminate, neighbours, place, room, unfold
 from .mesh import (
     ANGLE_STEP,
     ANGLES,
@@ -59,12 +60,6 @@ from .mesh import (
 
 
 @inner_kernel()
-def neighbours(k, angles):
-    """The angles before and after angle k, around the circle."""
-    return k - 1 if k > 0 else angles - 1, k + 1 if k < angles - 1 else 0
-
-
-@inner_kernel()
 def split(f, u, p, fill):
     """Pressures `p` above cavitation (Pa) and `fill` of the unknowns `u`, all (angles, cells); a film that does not
     cavitate is full everywhere."""
@@ -73,19 +68,6 @@ def split(f, u, p, fill):
         for j in range(u.shape[1]):
             p[k, j] = f[SCALE] * max(u[k, j], lowest)
             fill[k, j] = 1.0 + min(u[k, j] - max(u[k, j], lowest), 0.0)
-
-
-@inner_kernel()
-def place(k, angles):
-    """Place in the band of angle k: the circle folded, so that neighbours are two places apart at most."""
-    return 2 * k - 1 if 0 < k <= angles // 2 else 2 * (angles - k) % (2 * angles)
-
-
-@inner_kernel()
-def room(angles, cells):
-    """Room for the band matrix (n, 2 width + 1) of so many cells, and for its right side (n,)."""
-    n, width = angles * cells, 2 * cells if angles > 2 else cells if angles == 2 else 1
-    return np.empty((n, 2 * width + 1)), np.empty(n)
 
 
 @inner_kernel()
@@ -125,47 +107,6 @@ def lay_out(f, s, carried, ways, around, full, storing, stored, band, y):
                 row[width + to_after] -= scale * around[k, j]
             elif wet < 0.0:
                 row[width + to_after] += wet * carried[k, j]
-
-
-@inner_kernel()
-def eliminate(band, y):
-    """Solve with a band matrix (n, 2 width + 1), its diagonal in the middle, and `y` (n,), both of which it spoils; the
-    solution is left in `y`.  Returns whether all pivots are numbers other than 0.
-
-    Without exchanges of rows: every column is dominated by its diagonal, for what a cell loses its neighbours get.
-    """
-    n, width = band.shape[0], band.shape[1] // 2
-    for i in range(n):
-        pivot = band[i, width]
-        if not abs(pivot) > 0.0:
-            return False
-        last = min(width, n - 1 - i)
-        # The row ends where the folded circle does.
-        while last > 0 and band[i, width + last] == 0.0 and band[i + last, width - last] == 0.0:
-            last -= 1
-        head = band[i, width + 1 : width + 1 + last]
-        for down in range(1, last + 1):
-            share = band[i + down, width - down] / pivot
-            if share != 0.0:
-                tail = band[i + down, width - down + 1 : width - down + 1 + last]
-                for across in range(last):
-                    tail[across] -= share * head[across]
-                y[i + down] -= share * y[i]
-    for i in range(n - 1, -1, -1):
-        for across in range(1, min(width, n - 1 - i) + 1):
-            y[i] -= band[i, width + across] * y[i + across]
-        y[i] /= band[i, width]
-    return True
-
-
-@inner_kernel()
-def unfold(y, u):
-    """Unknowns `u` (angles, cells) from their order in the band, `y` (n,)."""
-    angles, cells = u.shape
-    for k in range(angles):
-        here = place(k, angles) * cells
-        for j in range(cells):
-            u[k, j] = y[here + j]
 
 
 @inner_kernel()
