@@ -126,6 +126,27 @@ def smallest_gap(f, dz, tilt, change):
 
 
 @inner_kernel()
+def edges_of(f, s):
+    """Mean films (m) at the inner and the outer edge, and their swings around the circle (m), of a gap state between
+    faces without waves and profile."""
+    tilt, mean = math.hypot(s[GX], s[GY]), 0.5 * (f[INNER_RADIUS] + f[OUTER_RADIUS])
+    inner, outer = (mean, mean) if f[TILT_AT_MEAN] != 0.0 else (f[INNER_RADIUS], f[OUTER_RADIUS])
+    h_i = f[CLEARANCE] + s[DZ]
+    coning = f[CONING] + s[CONING_CHANGE]
+    return h_i, h_i + coning * (f[OUTER_RADIUS] - f[INNER_RADIUS]), inner * tilt, outer * tilt
+
+
+@inner_kernel()
+def tilt_frame(s):
+    """The frame in which beta counts from the thinnest place: tilt (rad), cosine and sine of the angle alpha of its
+    vector, and the tilt's rates (rad/s) along that and across it, less the wedge of the mean spin."""
+    tilt = math.hypot(s[GX], s[GY])
+    c_a, s_a = (s[GX] / tilt, s[GY] / tilt) if tilt > 0.0 else (1.0, 0.0)
+    along = c_a * s[GX_RATE] + s_a * s[GY_RATE]
+    return tilt, c_a, s_a, along, c_a * s[GY_RATE] - s_a * s[GX_RATE] - s[MEAN_SPIN] * tilt
+
+
+@inner_kernel()
 def regularised_thickness(h, floor):
     """Film thickness (m) as the film laws see it: h (m) itself above the `floor` (m), below it a positive continuation
     with the same slope, so that a solver's trial state never meets 1/h**3 of h <= 0."""

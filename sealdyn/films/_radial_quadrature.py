@@ -17,10 +17,14 @@ import numpy as np
 
 from ..faces.film_thickness import film_thickness
 from ..faces.geometry import (
+    CAVITATED,
     CONING_RATE,
     DZ_RATE,
     FACE_SIZE,
     FLOOR,
+    FLOW_INNER,
+    FLOW_OUTER,
+    FORCE,
     GAP_STATE_SIZE,
     GX,
     GX_RATE,
@@ -29,6 +33,8 @@ from ..faces.geometry import (
     INNER_PRESSURE,
     INNER_RADIUS,
     MEAN_SPIN,
+    MOMENT_X,
+    MOMENT_Y,
     OUTER_PRESSURE,
     OUTER_RADIUS,
     PLANAR,
@@ -36,6 +42,7 @@ from ..faces.geometry import (
     PROFILE_RADII,
     SPIN_DIFFERENCE,
     TILT_AT_MEAN,
+    TORQUE,
     VISCOSITY,
     face_parameters,
     regularised_thickness,
@@ -172,6 +179,40 @@ def points_for(f, h_i, h_o):
         if ratio <= f[RULES + rule * RULE_SIZE + 1]:
             return rule
     return len(RADIAL_POINTS) - 1
+
+
+@inner_kernel()
+def rule_at(f, rule):
+    """Points and weights, each (points,), on [-1, 1] of a Gauss rule (index); `f` the film's block."""
+    slot = RULES + RULE_SIZE * rule
+    points, weights = int(f[slot]), slot + 2 + RADIAL_POINTS[-1]
+    return f[slot + 2 : slot + 2 + points], f[weights : weights + points]
+
+
+@inner_kernel()
+def write_circle(f, s, frame, g, d_beta, sums, complete):
+    """Write the gap state's force and moments, with `complete` its flows and torque too: `sums` over half the circle
+    in steps of `d_beta` (rad) of the force, the even and the odd moment, the flows at both edges, the shear and the
+    pressure on the slope; `frame` of `tilt_frame`, `g` of `centrifugal`.  Returns the torque's part that the pressure
+    has on the slope of the film."""
+    tilt, c_a, s_a, _, across = frame
+    force, moment_even, moment_odd, flow_i, flow_o, drag, twist = sums
+    r_i, r_o, mu, r_m = f[INNER_RADIUS], f[OUTER_RADIUS], s[VISCOSITY], 0.5 * (f[INNER_RADIUS] + f[OUTER_RADIUS])
+    p_i, p_o = s[INNER_PRESSURE] - 0.5 * g * r_i * r_i, s[OUTER_PRESSURE] - 0.5 * g * r_o * r_o
+    m_along, m_across = 4.0 * mu * d_beta * moment_even, -4.0 * mu * across * d_beta * moment_odd
+    s[FORCE] = math.pi * (p_o * r_o * r_o - p_i * r_i * r_i) - 6.0 * mu * d_beta * force
+    s[FORCE] += 0.25 * math.pi * g * (r_o**4 - r_i**4)
+    s[MOMENT_X], s[MOMENT_Y] = c_a * m_along - s_a * m_across, s_a * m_along + c_a * m_across
+    s[CAVITATED] = 0.0
+    if not complete:
+        return 0.0
+    # The planar face is a strip of the mean circumference: what flows in flows out.
+    s[FLOW_INNER] = flow_i * d_beta * (r_m if f[PLANAR] != 0.0 else 1.0)
+    s[FLOW_OUTER] = flow_o * d_beta * (r_m if f[PLANAR] != 0.0 else 1.0)
+    # Couette drag, and the pressure pushing on the slope of the film (by parts: no dp/dtheta needed).
+    pressure_part = -3.0 * mu * across * d_beta * twist * r_m if f[TILT_AT_MEAN] != 0.0 else 0.5 * m_across
+    s[TORQUE] = mu * s[SPIN_DIFFERENCE] * d_beta * drag + tilt * pressure_part
+    return tilt * pressure_part
 
 
 @inner_kernel()
@@ -313,9 +354,7 @@ def _pressure(f, s, nodes, steps, r, out):
         tilt_rate += s[CONING_RATE]
         q, _ = cubic(s[DZ_RATE] - s[CONING_RATE] * r[0], tilt_rate, r[0], r[-1], mean, planar)
         for k in range(1, len(r)):
-            rule = RULES + RULE_SIZE * points_for(f, h[k - 1], h[k])
-            first, points = rule + 2, int(f[rule])
-            x_k, w_k = f[first : first + points], f[first + RADIAL_POINTS[-1] : first + RADIAL_POINTS[-1] + points]
+            x_k, w_k = rule_at(f, points_for(f, h[k - 1], h[k]))
             part = line_sums(0.0, q, r[0], planar, r[k - 1] - r[0], r[k] - r[0], h[k - 1], h[k], x_k, w_k)
             driven[k], through[k] = driven[k - 1] + part[0], through[k - 1] + part[3]
         c = ((p_o - p_i - 0.5 * g * (r[-1] ** 2 - r[0] ** 2)) / per - driven[-1]) / through[-1]

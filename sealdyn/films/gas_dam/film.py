@@ -13,10 +13,6 @@ import numpy as np
 
 from ...faces.geometry import (
     CAVITATED,
-    CLEARANCE,
-    CONING,
-    CONING_CHANGE,
-    DZ,
     FACE_SIZE,
     FLOOR,
     FLOW_INNER,
@@ -34,9 +30,9 @@ from ...faces.geometry import (
     REFUSED,
     SPIN_DIFFERENCE,
     TEMPERATURE,
-    TILT_AT_MEAN,
     TORQUE,
     VISCOSITY,
+    edges_of,
     face_parameters,
     regularised_thickness,
 )
@@ -107,17 +103,6 @@ def _gas(f, s):
 
 
 @inner_kernel()
-def _edges(f, s):
-    """Mean films (m) at the inner and the outer edge, and their swings around the circle (m)."""
-    r_i, r_o, tilt = f[INNER_RADIUS], f[OUTER_RADIUS], math.hypot(s[GX], s[GY])
-    h_i = f[CLEARANCE] + s[DZ]
-    h_o = h_i + (f[CONING] + s[CONING_CHANGE]) * (r_o - r_i)
-    if f[TILT_AT_MEAN] != 0.0:
-        r_i = r_o = 0.5 * (r_i + r_o)
-    return h_i, h_o, r_i * tilt, r_o * tilt
-
-
-@inner_kernel()
 def _solve(f, g, s, edges, cos, out):
     """Flow through the sector at this cosine of the angle from the thinnest place; films at its edges, and its code."""
     h_i = regularised_thickness(edges[0] - edges[2] * cos, f[FLOOR])
@@ -142,7 +127,7 @@ def _circle(f, s, complete):
     """Adds up the sectors: force and moments, with `complete` also flow and torque."""
     r_i, r_o = f[INNER_RADIUS], f[OUTER_RADIUS]
     r_m, low = 0.5 * (r_i + r_o), min(s[INNER_PRESSURE], s[OUTER_PRESSURE])
-    g, out, edges = _gas(f, s), np.empty(sector.DAM_SIZE), _edges(f, s)
+    g, out, edges = _gas(f, s), np.empty(sector.DAM_SIZE), edges_of(f, s)
     tilt = math.hypot(s[GX], s[GY])
 
     # The thinnest place and the thickest tell what is between.
@@ -225,7 +210,7 @@ def _radius(f, k, count):
 @value_kernel()
 def fields(f, s, out):
     """Pressure (Pa) at the grid's radii and angles into `out` (1, radii, angles); NaN where there is no solution."""
-    g, work, edges = _gas(f, s), np.empty(sector.DAM_SIZE), _edges(f, s)
+    g, work, edges = _gas(f, s), np.empty(sector.DAM_SIZE), edges_of(f, s)
     r_i, r_o, thinnest = f[INNER_RADIUS], f[OUTER_RADIUS], math.atan2(-s[GX], s[GY])
     outwards = s[INNER_PRESSURE] > s[OUTER_PRESSURE]
     for j in range(out.shape[2]):
@@ -245,7 +230,7 @@ def fields(f, s, out):
 
 def sectors_for(f, s) -> int:
     """How many sectors the rule takes at a gap state where nothing begins to choke."""
-    return _sectors(f, _edges(f, s), False)
+    return _sectors(f, edges_of(f, s), False)
 
 
 def mean_circumference(f) -> bool:
@@ -255,7 +240,7 @@ def mean_circumference(f) -> bool:
 
 def exit_mach(f, s) -> tuple[float, float]:
     """Least and largest Mach number at the exit around the circle at a gap state."""
-    g, edges, out, found = _gas(f, s), _edges(f, s), np.empty(sector.DAM_SIZE), []
+    g, edges, out, found = _gas(f, s), edges_of(f, s), np.empty(sector.DAM_SIZE), []
     for cos in np.cos(np.linspace(0.0, np.pi, ANGLES + 1)):
         _solve(f, g, s, edges, cos, out)
         found.append(float(out[sector.EXIT_MACH]))

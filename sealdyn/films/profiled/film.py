@@ -17,12 +17,11 @@ angle.
 """
 
 import math
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import numpy as np
 
 from ...faces.geometry import (
-    CAVITATED,
     CLEARANCE,
     CONING,
     CONING_CHANGE,
@@ -30,29 +29,18 @@ from ...faces.geometry import (
     DZ,
     DZ_RATE,
     FLOOR,
-    FLOW_INNER,
-    FLOW_OUTER,
-    FORCE,
-    GX,
-    GX_RATE,
-    GY,
-    GY_RATE,
     INNER_PRESSURE,
     INNER_RADIUS,
-    MEAN_SPIN,
-    MOMENT_X,
-    MOMENT_Y,
     OUTER_PRESSURE,
     OUTER_RADIUS,
     PLANAR,
     PROFILE,
     PROFILE_DEPTHS,
     PROFILE_RADII,
-    SPIN_DIFFERENCE,
     TILT_AT_MEAN,
-    TORQUE,
     VISCOSITY,
     regularised_thickness,
+    tilt_frame,
 )
 from ...numerics.kernel import inner_kernel, value_kernel
 from .. import _radial_quadrature
@@ -72,6 +60,8 @@ from .._radial_quadrature import (
     grid,
     points_for,
     relative_clearance,
+    rule_at,
+    write_circle,
 )
 from . import OFFER
 
@@ -150,14 +140,6 @@ def pieces_of(f, nodes, tilt):
             total += int(f[RULES + RULE_SIZE * piece[RULE]])
         last_thin, last_thick = thin, thick
     return pieces, total, angle_count(f, room, bent), low
-
-
-@inner_kernel()
-def rule_at(f, rule):
-    """Points and weights, each (points,), on [-1, 1] of a rule (index); `f` the film's block."""
-    slot = RULES + RULE_SIZE * rule
-    points, weights = int(f[slot]), slot + 2 + RADIAL_POINTS[-1]
-    return f[slot + 2 : slot + 2 + points], f[weights : weights + points]
 
 
 @inner_kernel()
@@ -291,13 +273,6 @@ def parameters(film, clearance: float, error: float = 1e-8) -> np.ndarray:
     return f
 
 
-def opening_law(film, mean_spin=0.0, spin_difference=0.0):
-    """Opening force (N) of the aligned film between still or turning faces (rad/s),
-    `force(clearance, inner_pressure, outer_pressure, floor)`: pressures absolute (Pa), clearance and floor of the film
-    thickness (without it the film's own) in m."""
-    return _radial_quadrature.opening_law(parameters, wrench, film, mean_spin, spin_difference)
-
-
 @inner_kernel()
 def _circle(f, s, complete):
     """Integrate over the face.  `complete` asks for leakage and friction torque too."""
@@ -310,11 +285,9 @@ def _circle(f, s, complete):
     g = centrifugal(f, s)
     p_i, p_o = p_i - 0.5 * g * r_i * r_i, p_o - 0.5 * g * r_o * r_o
 
-    # The frame of the tilt: beta = 0 at the thinnest place, f even part + odd part.
-    tilt = math.hypot(s[GX], s[GY])
-    c_a, s_a = (s[GX] / tilt, s[GY] / tilt) if tilt > 0.0 else (1.0, 0.0)
-    along = c_a * s[GX_RATE] + s_a * s[GY_RATE]
-    across = c_a * s[GY_RATE] - s_a * s[GX_RATE] - s[MEAN_SPIN] * tilt
+    # In the frame of the tilt f is even part + odd part.
+    frame = tilt_frame(s)
+    tilt, along = frame[0], frame[3]
 
     nodes = nodes_of(f, s)
     pieces, points, angles, low = pieces_of(f, nodes, tilt)
@@ -341,18 +314,8 @@ def _circle(f, s, complete):
             twist += twice * sin_b * sin_b * (b1 + edge_odd * b0)
 
     d_beta = 2.0 * math.pi / angles
-    m_along, m_across = 4.0 * mu * d_beta * moment_even, -4.0 * mu * across * d_beta * moment_odd
-    s[FORCE] = math.pi * (p_o * r_o * r_o - p_i * r_i * r_i) - 6.0 * mu * d_beta * force
-    s[FORCE] += 0.25 * math.pi * g * (r_o**4 - r_i**4)
-    s[MOMENT_X], s[MOMENT_Y] = c_a * m_along - s_a * m_across, s_a * m_along + c_a * m_across
-    s[CAVITATED] = 0.0
-    if complete:
-        # The planar face is a strip of the mean circumference: what flows in flows out.
-        s[FLOW_INNER] = flow_i * d_beta * (r_m if planar else 1.0)
-        s[FLOW_OUTER] = flow_o * d_beta * (r_m if planar else 1.0)
-        # Couette drag, and the pressure pushing on the slope of the film (by parts: no dp/dtheta needed).
-        pressure_part = -3.0 * mu * across * d_beta * twist * r_m if mean else 0.5 * m_across
-        s[TORQUE] = mu * s[SPIN_DIFFERENCE] * d_beta * couette + tilt * pressure_part
+    around = force, moment_even, moment_odd, flow_i, flow_o, couette, twist
+    write_circle(f, s, frame, g, d_beta, around, complete)
 
 
 @value_kernel()
@@ -372,7 +335,7 @@ FILM = Film(
     **OFFER._asdict(),
     accepts=accepts,
     parameters=parameters,
-    opening_law=opening_law,
+    opening_law=partial(_radial_quadrature.opening_law, parameters, wrench),
     wrench=wrench,
     flow=flow,
     quantities=(PRESSURE,),

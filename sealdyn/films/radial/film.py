@@ -31,34 +31,19 @@ import numpy as np
 from numba import njit
 
 from ...faces.geometry import (
-    CAVITATED,
-    CLEARANCE,
-    CONING,
-    CONING_CHANGE,
     CONING_RATE,
-    DZ,
     DZ_RATE,
     FLOOR,
-    FLOW_INNER,
-    FLOW_OUTER,
-    FORCE,
-    GX,
-    GX_RATE,
-    GY,
-    GY_RATE,
     INNER_PRESSURE,
     INNER_RADIUS,
-    MEAN_SPIN,
-    MOMENT_X,
-    MOMENT_Y,
     OUTER_PRESSURE,
     OUTER_RADIUS,
     PLANAR,
-    SPIN_DIFFERENCE,
     TILT_AT_MEAN,
-    TORQUE,
     VISCOSITY,
+    edges_of,
     regularised_thickness,
+    tilt_frame,
 )
 from ...numerics.kernel import inner_kernel, value_kernel
 from .. import _radial_quadrature
@@ -68,8 +53,6 @@ from .._radial_quadrature import (
     MOST_ANGLES,
     PANEL_RULE,
     RADIAL_POINTS,
-    RULE_SIZE,
-    RULES,
     SINES,
     angle_count,
     centrifugal,
@@ -77,6 +60,8 @@ from .._radial_quadrature import (
     grid,
     points_for,
     relative_clearance,
+    rule_at,
+    write_circle,
 )
 from . import OFFER
 
@@ -100,23 +85,6 @@ def parameters(film, clearance: float, error: float = 1e-8) -> np.ndarray:
     if film.cavitation_pressure is not None:
         raise ValueError("a floor of the pressure is for films/radial/floored.py")
     return _radial_quadrature.parameters(film, clearance, error)
-
-
-def opening_law(film, mean_spin=0.0, spin_difference=0.0):
-    """Opening force (N) of the aligned film between still or turning faces (rad/s),
-    `force(clearance, inner_pressure, outer_pressure, floor)`: pressures absolute (Pa), clearance and floor of the film
-    thickness (without it the film's own) in m."""
-    return _radial_quadrature.opening_law(parameters, wrench, film, mean_spin, spin_difference)
-
-
-@inner_kernel()
-def edges_of(f, s):
-    """Mean films (m) at the inner and the outer edge, and their swings around the circle (m), of a gap state."""
-    tilt, mean = math.hypot(s[GX], s[GY]), 0.5 * (f[INNER_RADIUS] + f[OUTER_RADIUS])
-    inner, outer = (mean, mean) if f[TILT_AT_MEAN] != 0.0 else (f[INNER_RADIUS], f[OUTER_RADIUS])
-    h_i = f[CLEARANCE] + s[DZ]
-    coning = f[CONING] + s[CONING_CHANGE]
-    return h_i, h_i + coning * (f[OUTER_RADIUS] - f[INNER_RADIUS]), inner * tilt, outer * tilt
 
 
 @inner_kernel()
@@ -196,11 +164,9 @@ def circle(f, s, edges, nodes, first, stride, half, d_beta, complete):
     g = centrifugal(f, s)
     p_i, p_o = p_i - 0.5 * g * r_i * r_i, p_o - 0.5 * g * r_o * r_o
 
-    # Turn to the frame of the tilt: beta = 0 at the thinnest place, f even part + odd part.
-    tilt = math.hypot(s[GX], s[GY])
-    c_a, s_a = (s[GX] / tilt, s[GY] / tilt) if tilt > 0.0 else (1.0, 0.0)
-    along = c_a * s[GX_RATE] + s_a * s[GY_RATE]
-    across = c_a * s[GY_RATE] - s_a * s[GX_RATE] - s[MEAN_SPIN] * tilt
+    # In the frame of the tilt f is even part + odd part.
+    frame = tilt_frame(s)
+    along = frame[3]
     # A cone that grows is a tilting of every radius alike.
     cone_rate = s[CONING_RATE]
     z_rate = s[DZ_RATE] - cone_rate * r_i
@@ -209,10 +175,7 @@ def circle(f, s, edges, nodes, first, stride, half, d_beta, complete):
     low = h_i0 - swing_i < floor or h_o0 - swing_o < floor
     thin = points_for(f, regularised_thickness(h_i0 - swing_i, floor), regularised_thickness(h_o0 - swing_o, floor))
     thick = points_for(f, regularised_thickness(h_i0 + swing_i, floor), regularised_thickness(h_o0 + swing_o, floor))
-    rule = RULES + RULE_SIZE * (thin if thin > thick else thick)
-    points = int(f[rule])
-    x_k = f[rule + 2 : rule + 2 + points]
-    w_k = f[rule + 2 + RADIAL_POINTS[-1] : rule + 2 + RADIAL_POINTS[-1] + points]
+    x_k, w_k = rule_at(f, thin if thin > thick else thick)
     drive = (p_o - p_i) / (12.0 * mu)
 
     if planar:
@@ -253,22 +216,8 @@ def circle(f, s, edges, nodes, first, stride, half, d_beta, complete):
                 drag += twice * at[D0, j]
                 twist += twice * sin_b * sin_b * (at[B1, j] + edge_odd * at[B0, j])
 
-    m_along = 4.0 * mu * d_beta * moment_even
-    m_across = -4.0 * mu * across * d_beta * moment_odd
-    s[FORCE] = math.pi * (p_o * r_o * r_o - p_i * r_i * r_i) - 6.0 * mu * d_beta * force
-    s[FORCE] += 0.25 * math.pi * g * (r_o**4 - r_i**4)
-    s[MOMENT_X] = c_a * m_along - s_a * m_across
-    s[MOMENT_Y] = s_a * m_along + c_a * m_across
-    s[CAVITATED] = 0.0
-    if complete:
-        # The planar face is a strip of the mean circumference: what flows in flows out.
-        s[FLOW_INNER] = flow_i * d_beta * (r_m if planar else 1.0)
-        s[FLOW_OUTER] = flow_o * d_beta * (r_m if planar else 1.0)
-        # Couette drag, and the pressure pushing on the slope of the film (by parts: no dp/dtheta needed).
-        pressure_part = -3.0 * mu * across * d_beta * twist * r_m if mean else 0.5 * m_across
-        s[TORQUE] = mu * s[SPIN_DIFFERENCE] * d_beta * drag + tilt * pressure_part
-        return tilt * pressure_part
-    return 0.0
+    sums = force, moment_even, moment_odd, flow_i, flow_o, drag, twist
+    return write_circle(f, s, frame, g, d_beta, sums, complete)
 
 
 @inner_kernel()
@@ -374,7 +323,7 @@ _SMOOTH = Film(
     **OFFER._asdict(),
     accepts=accepts,
     parameters=parameters,
-    opening_law=opening_law,
+    opening_law=partial(_radial_quadrature.opening_law, parameters, wrench),
     wrench=wrench,
     flow=flow,
     quantities=(PRESSURE,),

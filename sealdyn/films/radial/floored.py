@@ -17,21 +17,12 @@ import numpy as np
 
 from ...faces.geometry import (
     CAVITATED,
-    CLEARANCE,
-    CONING,
-    CONING_CHANGE,
     CONING_RATE,
-    DZ,
     DZ_RATE,
     FLOOR,
     FORCE,
-    GX,
-    GX_RATE,
-    GY,
-    GY_RATE,
     INNER_PRESSURE,
     INNER_RADIUS,
-    MEAN_SPIN,
     MOMENT_X,
     MOMENT_Y,
     OUTER_PRESSURE,
@@ -40,19 +31,19 @@ from ...faces.geometry import (
     TILT_AT_MEAN,
     TORQUE,
     VISCOSITY,
+    edges_of,
     regularised_thickness,
+    tilt_frame,
 )
 from ...numerics.kernel import inner_kernel, value_kernel
 from .._radial_quadrature import (
     CAVITATION,
     ERROR,
-    RADIAL_POINTS,
-    RULE_SIZE,
-    RULES,
     centrifugal,
     opening_law,
     parameters,
     points_for,
+    rule_at,
 )
 from .cavitated_line import HAS_DRY, HAS_WET, cavitated_line, line_state
 from .film import FILM as PLAIN
@@ -94,15 +85,9 @@ LOAD, ALONG, ACROSS, SLOPE, WET = range(5)
 @inner_kernel()
 def _edges(f, s):
     """Constants of the circle in the tilt's own frame: see `_line_at`."""
-    r_i, r_o, floor = f[INNER_RADIUS], f[OUTER_RADIUS], f[FLOOR]
-    mean, width, r_m = f[TILT_AT_MEAN] != 0.0, r_o - r_i, 0.5 * (r_i + r_o)
-    tilt = math.hypot(s[GX], s[GY])
-    c_a, s_a = (s[GX] / tilt, s[GY] / tilt) if tilt > 0.0 else (1.0, 0.0)
-    along = c_a * s[GX_RATE] + s_a * s[GY_RATE]
-    across = c_a * s[GY_RATE] - s_a * s[GX_RATE] - s[MEAN_SPIN] * tilt
-    swing_i, swing_o = (r_m * tilt, r_m * tilt) if mean else (r_i * tilt, r_o * tilt)
-    thin_i = f[CLEARANCE] + s[DZ] - swing_i
-    thin_o = f[CLEARANCE] + s[DZ] + (f[CONING] + s[CONING_CHANGE]) * width - swing_o
+    floor, (tilt, c_a, s_a, along, across) = f[FLOOR], tilt_frame(s)
+    h_i, h_o, swing_i, swing_o = edges_of(f, s)
+    thin_i, thin_o = h_i - swing_i, h_o - swing_o
     thick_i, thick_o = (
         regularised_thickness(thin_i + 2.0 * swing_i, floor),
         regularised_thickness(thin_o + 2.0 * swing_o, floor),
@@ -111,7 +96,7 @@ def _edges(f, s):
     # Sommerfeld's k for each edge, and the one that keeps the zeros of both films equally far.
     spread = math.sqrt(math.sqrt(clipped_i / thick_i * clipped_o / thick_o))
     rule = max(points_for(f, clipped_i, clipped_o), points_for(f, thick_i, thick_o))
-    return tilt, c_a, s_a, (thin_i, thin_o, swing_i, swing_o, along, across, spread), RULES + RULE_SIZE * rule
+    return tilt, c_a, s_a, (thin_i, thin_o, swing_i, swing_o, along, across, spread), rule
 
 
 @inner_kernel()
@@ -341,9 +326,7 @@ def cavitated_circle(f, s):
     the worst panel halved until the error is what was asked for, up to MOST_PANELS.
     """
     tilt, c_a, s_a, turn, rule = _edges(f, s)
-    points = int(f[rule])
-    x_k = f[rule + 2 : rule + 2 + points]
-    w_k = f[rule + 2 + RADIAL_POINTS[-1] : rule + 2 + RADIAL_POINTS[-1] + points]
+    x_k, w_k = rule_at(f, rule)
     gammas, states = _scan(turn, f, s, x_k, w_k)
     kinks, after = _kinks(gammas, states, turn, f, s, x_k, w_k)
     if len(kinks) == 0 and not states[0] & HAS_DRY:
