@@ -286,36 +286,21 @@ def cubic(z_rate, tilt_rate, r_i, r_o, mean, planar):
 FIELD_STEPS, FIELD_ANGLES = 16, 48
 
 
-def _nodes(f):
-    """Radii (m) between which the film thickness is linear: both edges, or those of the profile."""
-    if f[PROFILE] == 0.0:
-        return np.array([f[INNER_RADIUS], f[OUTER_RADIUS]])
-    return f[PROFILE_RADII : PROFILE_RADII + int(f[PROFILE])].copy()
-
-
-def _steps(nodes):
-    """Equal steps between each node and the next, and how many in all."""
-    steps, total = np.empty(len(nodes) - 1, np.int64), 0
-    for n in range(len(steps)):
-        steps[n] = math.ceil(FIELD_STEPS * (nodes[n + 1] - nodes[n]) / (nodes[-1] - nodes[0]) - 1e-9)
-        total += steps[n]
-    return steps, total
-
-
-def _radii(nodes, steps, total):
-    """Radii (m) of the grid."""
-    r, at = np.empty(total + 1), 0
-    for n in range(len(steps)):
-        for i in range(steps[n]):
-            r[at], at = nodes[n] + (nodes[n + 1] - nodes[n]) * i / steps[n], at + 1
-    r[at] = nodes[-1]
-    return r
+def _radii(f):
+    """Radii (m) between which the film thickness is linear (both edges, or those of the profile), how many equal steps
+    lie between each and the next, and the radii (m) of the grid."""
+    nodes = f[[INNER_RADIUS, OUTER_RADIUS]]
+    if f[PROFILE] != 0.0:
+        nodes = f[PROFILE_RADII : PROFILE_RADII + int(f[PROFILE])].copy()
+    widths = np.diff(nodes)
+    steps = np.ceil(FIELD_STEPS * widths / (nodes[-1] - nodes[0]) - 1e-9).astype(np.int64)
+    parts = [a + width * np.arange(n) / n for a, width, n in zip(nodes, widths, steps, strict=False)]
+    return nodes, steps, np.concatenate([*parts, nodes[-1:]])
 
 
 def grid(f):
     """Radii (m) of the grid, edges and nodes of a profile among them, and its angles (rad)."""
-    nodes = _nodes(f)
-    return _radii(nodes, *_steps(nodes)), 2.0 * math.pi / FIELD_ANGLES * np.arange(FIELD_ANGLES)
+    return _radii(f)[2], 2.0 * math.pi / FIELD_ANGLES * np.arange(FIELD_ANGLES)
 
 
 @inner_kernel()
@@ -333,9 +318,7 @@ def _thicknesses(f, s, nodes, steps, theta, h):
 def fields(f, s, out):
     """Pressure (Pa, absolute) of a gap state `s` on the grid, `out` (1, radii, angles); with the film's floor where it
     has one."""
-    nodes = _nodes(f)
-    steps, total = _steps(nodes)
-    _pressure(f, s, nodes, steps, _radii(nodes, steps, total), out[0])
+    _pressure(f, s, *_radii(f), out[0])
 
 
 @outer_kernel()

@@ -24,7 +24,7 @@ from sealdyn.faces.geometry import DZ
 from sealdyn.films._cells_around import place, room
 from sealdyn.films.reynolds import film as reynolds
 from sealdyn.films.reynolds import pressure
-from sealdyn.films.reynolds.mesh import films
+from sealdyn.films.reynolds.mesh import ANGLES, CELLS, films
 from sealdyn.films.reynolds.pressure import lay_out
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.scene.film import Reynolds
@@ -85,7 +85,7 @@ def still(cells):
     for first in (True, False):
         best, rounds = np.inf, 0
         for _ in range(REPEATS):
-            u = pressure.unknowns(f)
+            u = np.ones((int(f[ANGLES]), int(f[CELLS])))
             if not first:
                 s[DZ] = 0.0
                 pressure.solve(f, s, u)
@@ -100,7 +100,7 @@ def still(cells):
 def sparse(f, s):
     """Seconds of the last linear system by SuperLU, its unknowns in the order of the circle; those of the program's."""
     _, carried, ways, around = films(f, s)
-    nothing, u = np.zeros_like(carried), pressure.unknowns(f)
+    nothing, u = np.zeros_like(carried), np.ones((int(f[ANGLES]), int(f[CELLS])))
     pressure.solve(f, s, u)
     angles, cells = u.shape
     band, y = room(angles, cells)

@@ -160,7 +160,7 @@ def test_opening_force_is_the_aligned_film_s(shape):
     state = np.array([0.0] * 6 + [500.0])
     # At rest and aligned neither viscosity nor spin matter.
     force = kernel(block(shape), state)[0]
-    assert profiled.opening_law(table)(CLEARANCE, P_I, P_O) == pytest.approx(force, rel=1e-13)
+    assert profiled.FILM.opening_law(table)(CLEARANCE, P_I, P_O) == pytest.approx(force, rel=1e-13)
 
 
 @pytest.mark.parametrize("shape", BENT.values(), ids=BENT)

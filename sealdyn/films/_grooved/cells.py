@@ -143,11 +143,11 @@ def parameters(table, clearance: float, error: float = 1e-8) -> np.ndarray:
     place = np.where(mesh.inner, -1.0, -2.0)
     place[mesh.free] = np.arange(len(mesh.free))
     turned = still.weights(2, 1)
-    of_nodes(f)[:] = (
+    node_table(f)[:] = (
         r, mesh.phi, np.sin(mesh.phi), np.cos(mesh.phi), place, cells, deeper / cells, still.weights(1),
         turned.real, turned.imag,
     )  # fmt: skip
-    rows = _of_triangles(f)
+    rows = triangle_table(f)
     rows[:, :BY_U] = np.stack([still.r, np.sin(still.phi), np.cos(still.phi), mesh.depth, mesh.area], axis=1)
     rows[:, BY_U:LINKS] = np.hstack([*mesh.gradients, mesh.corners, mesh.shifts])
     return _linked(f)
@@ -157,7 +157,7 @@ def _linked(f) -> np.ndarray:
     """The block with what hangs on the pitches that are computed."""
     keys, _, places = links(f)
     f[ENTRIES] = keys.shape[1]
-    _of_triangles(f)[:, LINKS:] = np.concatenate([found.reshape(-1, 9) for found in places], axis=1)
+    triangle_table(f)[:, LINKS:] = np.concatenate([found.reshape(-1, 9) for found in places], axis=1)
     return f
 
 
@@ -166,16 +166,6 @@ def of_one_pitch(f) -> np.ndarray:
     one = f.copy()
     one[SECTORS] = 1.0
     return _linked(one)
-
-
-def of_nodes(f):
-    nodes = int(f[NODES])
-    return f[TABLES : TABLES + NODE_ROWS * nodes].reshape(NODE_ROWS, nodes)
-
-
-def _of_triangles(f):
-    first = TABLES + NODE_ROWS * int(f[NODES])
-    return f[first:].reshape(-1, TRIANGLE_SIZE)
 
 
 def links(f):
@@ -189,7 +179,7 @@ def links(f):
 def _pitches(f) -> tuple[bytes, bytes, int, int]:
     """What links hang on: places of the nodes among the free ones, corners and shifts of the triangles, numbers of free
     nodes and of pitches.  A film is asked for often with one mesh."""
-    return of_nodes(f)[PLACE].tobytes(), _of_triangles(f)[:, CORNERS:LINKS].tobytes(), int(f[FREE]), int(f[SECTORS])
+    return node_table(f)[PLACE].tobytes(), triangle_table(f)[:, CORNERS:LINKS].tobytes(), int(f[FREE]), int(f[SECTORS])
 
 
 @lru_cache(maxsize=16)

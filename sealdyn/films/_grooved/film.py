@@ -79,7 +79,6 @@ from .cells import (
     land_rates,
     lands,
     node_table,
-    of_nodes,
     of_one_pitch,
     parameters,
     pattern_of_rows,
@@ -323,7 +322,7 @@ def fields(f, s, x, out):
 def start(f, s, x) -> int:
     """Unknowns `x` (n,) of the film that is steady in the pattern's frame at a gap state, but for what the gap's own
     rates squeeze.  Returns 0, or a code where none is found."""
-    one, aligned, table = of_one_pitch(f), s.copy(), of_nodes(f)
+    one, aligned, table = of_one_pitch(f), s.copy(), node_table(f)
     aligned[[GX, GY, GX_RATE, GY_RATE]] = 0.0
     share = np.log(table[RADIUS] / f[INNER_RADIUS]) / math.log(f[OUTER_RADIUS] / f[INNER_RADIUS])
     power = 2.0 if f[GAS] != 0.0 else 1.0
@@ -343,7 +342,7 @@ def start(f, s, x) -> int:
 
 def _held(f, s) -> tuple[np.ndarray, np.ndarray]:
     """What the unknowns (n,) have of a pressure, and the shares of it (1/s) that the gap's rates squeeze out."""
-    table, land = of_nodes(f), np.empty((int(f[SECTORS]), int(f[NODES])))
+    table, land = node_table(f), np.empty((int(f[SECTORS]), int(f[NODES])))
     rates, free = np.empty(land.shape), table[PLACE] >= 0.0
     lands(f, s, land)
     if f[GAS] == 0.0:

@@ -171,11 +171,11 @@ def _breaks(edges: Edges, inner_radius: float, outer_radius: float) -> list[floa
     return [inner_radius, *between, outer_radius]
 
 
-def _divided(breaks, step: float, times: int, least: int) -> np.ndarray:
-    """Values from the first break to the last, evenly between neighbours, a step over so many times apart, at `least`
-    so many steps between two breaks."""
+def _divided(breaks, steps, times: int, least: int) -> np.ndarray:
+    """Values from the first break to the last, evenly between neighbours, about a step of each (one for all, or as many
+    as there are) over so many times apart, at `least` so many steps between two breaks."""
     parts = [np.array(breaks[:1])]
-    for a, b in pairwise(breaks):
+    for (a, b), step in zip(pairwise(breaks), np.broadcast_to(steps, len(breaks) - 1).tolist(), strict=True):
         parts.append(np.linspace(a, b, max(round((b - a) / step), least) * times + 1)[1:])
     return np.concatenate(parts)
 
@@ -321,10 +321,10 @@ def dimpled_mesh(pattern: Dimples, inner_radius: float, outer_radius: float, col
     half, fine = pattern.half_angle, min(pitch / columns, min(pattern.length, pattern.width) / pattern.radius / across)
     # Coarser where no dimple is.
     coarse = min(pitch / columns, 2.0 * fine)
-    u = _spread([math.log(r) for r in (inner_radius, low, high, outer_radius)], (coarse, fine, coarse), times)
+    u = _divided([math.log(r) for r in (inner_radius, low, high, outer_radius)], (coarse, fine, coarse), times, BESIDE)
     apart = 2.0 * half < (1.0 - CLOSE) * pitch
     ends = (-half, half, pitch - half) if apart else (-0.5 * pitch, 0.5 * pitch)
-    phi = pattern.phase + _spread(ends, (fine, coarse) if apart else (fine,), times)[:-1]
+    phi = pattern.phase + _divided(ends, (fine, coarse) if apart else fine, times, BESIDE)[:-1]
     rows, n = len(u), len(phi)
     if rows * n > MOST_NODES:
         raise ValueError(f"{rows * n:.3g} nodes to a pitch, more than {MOST_NODES}: dimples so small")
@@ -339,14 +339,6 @@ def dimpled_mesh(pattern: Dimples, inner_radius: float, outer_radius: float, col
     flat = np.arange(rows * n) // n
     return Mesh(radial.ravel(), around.ravel(), corners, shifts, np.where(inside, pattern.depth, 0.0), flat == 0,
                 flat == rows - 1, pattern.count, bends=False)  # fmt: skip
-
-
-def _spread(ends, steps, times: int) -> np.ndarray:
-    """Values from the first end to the last, evenly between neighbours, about a step over so many times apart."""
-    parts = [np.array(ends[:1])]
-    for (a, b), step in zip(pairwise(ends), steps, strict=True):
-        parts.append(np.linspace(a, b, times * max(round((b - a) / step), BESIDE) + 1)[1:])
-    return np.concatenate(parts)
 
 
 def _on_the_edge(pattern, radial, around, pitch: float):

@@ -66,7 +66,6 @@ from .pressure import (
     sum_up,
     wrench,
 )
-from .pressure import unknowns as first_unknowns
 
 
 def accepts(film, waves=()) -> str:
@@ -152,7 +151,8 @@ def opening_law(film, mean_spin=0.0, spin_difference=0.0, waves=None, contact=No
     lay_waves(f, *(waves or ((), ())))
     if contact is not None:
         lay_asperities(contact, f)
-    s, u = np.zeros(GAP_STATE_SIZE), first_unknowns(f)
+    # From nothing, with every cell taken for full.
+    s, u = np.zeros(GAP_STATE_SIZE), np.ones((int(f[ANGLES]), int(f[CELLS])))
     s[MEAN_SPIN], s[SPIN_DIFFERENCE], s[VISCOSITY] = mean_spin, spin_difference, initially(film.viscosity)
 
     def force(f, s):

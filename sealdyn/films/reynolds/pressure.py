@@ -255,8 +255,7 @@ def solve_moving(f, s, m, u):
         for j in range(u.shape[1]):
             whole = area[j] * f[ANGLE_STEP] / per
             nothing[k, j], stored[k, j] = -whole * m[k, j], whole * (stored[k, j] + per * rates[k, j])
-    found = balance(f, s, carried, ways, around, stored, nothing, u)
-    return found
+    return balance(f, s, carried, ways, around, stored, nothing, u)
 
 
 @value_kernel()
@@ -314,8 +313,3 @@ def keep_void(f, stored, m, u):
             for j in range(u.shape[1]):
                 if u[k, j] <= 0.0:
                     u[k, j] = min(m[k, j] / stored[k, j] - 1.0, 0.0)
-
-
-def unknowns(f) -> np.ndarray:
-    """Ones (angles, cells): a start from nothing, with every cell taken for full."""
-    return np.ones((int(f[ANGLES]), int(f[CELLS])))
