@@ -19,6 +19,7 @@ from typing import Any
 
 import numpy as np
 
+from ..closed_form import narrow_seal_opening_force
 from ..faces.film_thickness import film_thickness
 from ..faces.geometry import (
     CAVITATED,
@@ -66,6 +67,13 @@ FLOW_ANGLES = 64
 def normal_conditions(film) -> float:
     """Normal temperature over normal pressure (K/Pa) of a `Film` table with a gas; 0 with a liquid."""
     return 0.0 if film.gas is None else NORMAL_TEMPERATURE / NORMAL_PRESSURE
+
+
+def forces_per_pressure(film, clearance: float) -> tuple[float, float]:
+    """Opening force (N) of the aligned narrow seal of a `Film` table at a clearance (m), over its inner and over its
+    outer pressure (m^2)."""
+    faces = film.inner_radius, film.outer_radius, clearance, initially(film.coning)
+    return narrow_seal_opening_force(*faces, 1.0, 0.0), narrow_seal_opening_force(*faces, 0.0, 1.0)
 
 
 @inner_kernel()

@@ -38,7 +38,7 @@ from ..numerics.kernel import value_kernel
 from ..numerics.piecewise_linear import initially
 from ..scene.film import Coefficients, coning_varies
 from ._contract import Film
-from ._line_laws import narrow_seal, normal_conditions
+from ._line_laws import forces_per_pressure, narrow_seal, normal_conditions
 
 
 def accepts(film, waves=()) -> str:
@@ -67,14 +67,9 @@ def parameters(film, clearance: float, error: float = 1e-8) -> np.ndarray:
     """The film's block of the parameter array, shape (BLOCK_SIZE,).  `error` is not needed: no quadrature."""
     f = np.zeros(BLOCK_SIZE)
     f[:FACE_SIZE] = face_parameters(film, clearance)
-    faces = dict(
-        inner_radius=film.inner_radius,
-        outer_radius=film.outer_radius,
-        clearance=clearance,
-        coning=initially(film.coning),
-    )
     if film.coefficients == "green":
-        c = film_coefficients(**faces, viscosity=1.0, pressure_drop=1.0)
+        faces = film.inner_radius, film.outer_radius, clearance, initially(film.coning)
+        c = film_coefficients(*faces, viscosity=1.0, pressure_drop=1.0)
         f[TILT_K_DP], f[TILT_D_MU] = c.tilt_stiffness, c.tilt_damping
         f[AXIAL_K_DP], f[AXIAL_D_MU] = c.axial_stiffness, c.axial_damping
     else:
@@ -86,8 +81,7 @@ def parameters(film, clearance: float, error: float = 1e-8) -> np.ndarray:
             c.axial_damping,
         )
     f[GAS] = normal_conditions(film)
-    f[FORCE_I] = narrow_seal_opening_force(**faces, inner_pressure=1.0, outer_pressure=0.0)
-    f[FORCE_O] = narrow_seal_opening_force(**faces, inner_pressure=0.0, outer_pressure=1.0)
+    f[FORCE_I], f[FORCE_O] = forces_per_pressure(film, clearance)
     return f
 
 

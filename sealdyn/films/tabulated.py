@@ -16,7 +16,6 @@ import math
 
 import numpy as np
 
-from ..closed_form import narrow_seal_opening_force
 from ..faces.geometry import (
     CAVITATED,
     CLEARANCE,
@@ -45,7 +44,7 @@ from ..numerics.piecewise_linear import initially
 from ..scene.film import coning_varies
 from ..scene.tabulated import leakage_grid, tabulated_grid
 from ._contract import Film
-from ._line_laws import narrow_seal, normal_conditions
+from ._line_laws import forces_per_pressure, narrow_seal, normal_conditions
 
 # Block after the faces: numbers of clearances, of speeds, of clearances and of pressure differences of the leakage
 # (0: the narrow seal's); opening force per inner and outer pressure (m^2) and beside both (N); of a gas normal
@@ -84,11 +83,7 @@ def parameters(film, clearance: float, error: float = 1e-8) -> np.ndarray:
     head[:FACE_SIZE] = face_parameters(film, clearance)
     head[COUNT], head[SPEEDS] = len(rows), len(speeds)
     at = known_at(film)
-    faces = dict(
-        inner_radius=film.inner_radius, outer_radius=film.outer_radius, clearance=at, coning=initially(film.coning)
-    )
-    head[FORCE_I] = narrow_seal_opening_force(**faces, inner_pressure=1.0, outer_pressure=0.0)
-    head[FORCE_O] = narrow_seal_opening_force(**faces, inner_pressure=0.0, outer_pressure=1.0)
+    head[FORCE_I], head[FORCE_O] = forces_per_pressure(film, at)
     inner, outer = initially(film.inner_pressure), initially(film.outer_pressure)
     if film.tabulated.opening_force is not None:
         head[BESIDE] = film.tabulated.opening_force - head[FORCE_I] * inner - head[FORCE_O] * outer
