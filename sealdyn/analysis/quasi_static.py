@@ -113,20 +113,19 @@ class Wedge:
         return float(s[FORCE]) - self.at_rest, float(s[MOMENT_Y]), float(s[MOMENT_X])
 
 
-def static_residuals(force_ratio: float, films, ring: Ring | None = None, wedge: Wedge | None = None) -> np.ndarray:
-    """(force / F_s - 1, sine moment / (4 R F_d / pi) - 1) of the radial film at rest at (h0, h1) in m, shape (2,)."""
-    ring = ring or Ring()
-    force, sine, _ = (wedge or Wedge(ring))(films)
+def residuals(force_ratio: float, wedge: Wedge, films, rates=(0.0, 0.0)) -> np.ndarray:
+    """(force / F_s - 1, sine moment / (4 R F_d / pi) - 1) of the radial film at (h0, h1) in m and their rates in m/s,
+    shape (2,)."""
+    ring, (force, sine, _) = wedge.ring, wedge(films, rates)
     friction = closed.friction_moment(ring.spring_force / force_ratio, ring.mean_radius)
     return np.array([force / ring.spring_force - 1.0, sine / friction - 1.0])
 
 
-def static_root(force_ratio: float, start, ring: Ring | None = None) -> tuple[float, float]:
+def static_root(force_ratio: float, start, ring: Ring) -> tuple[float, float]:
     """Film h0, h1 (m) that balances the radial film, from `start` = (h0, h1).
 
     **Raises** ValueError naming hang-up if there is none.
     """
-    ring = ring or Ring()
     wedge = Wedge(ring)
 
     def films(x):
@@ -137,42 +136,24 @@ def static_root(force_ratio: float, start, ring: Ring | None = None) -> tuple[fl
     share = start[1] / start[0]
     # In logarithms force and moment are nearly linear in these; a film without a cavity has no force.
     found = root(
-        lambda x: np.log1p(np.maximum(static_residuals(force_ratio, films(x), ring, wedge), FLAT - 1)),
+        lambda x: np.log1p(np.maximum(residuals(force_ratio, wedge, films(x)), FLAT - 1)),
         [math.log(start[0]), math.log(share / (1 - share))],
         tol=1e-12,
     )
-    if not np.max(np.abs(static_residuals(force_ratio, films(found.x), ring, wedge))) < 1e-6:
+    if not np.max(np.abs(residuals(force_ratio, wedge, films(found.x)))) < 1e-6:
         raise ValueError(f"hang-up: no film found that balances spring and friction at F_s/F_d = {force_ratio:.4g}")
     return films(found.x)
 
 
-def linearised(force_ratio: float, films, ring: Ring | None = None) -> np.ndarray:
-    """Eigenvalues (1/s) of the two unknowns about (h0, h1), from central differences of the radial film."""
-    wedge = Wedge(ring or Ring())
-    step, pace = 1e-4 * (films[0] - films[1]), 0.5 * (ring or Ring()).shaft_speed
-    columns = []
-    for k in range(4):
-        size = step if k < 2 else step * pace
-        move = np.eye(4)[k] * size
-        up, down = (np.array(wedge(films + m[:2], m[2:])[:2]) for m in (move, -move))
-        columns.append((up - down) / (2 * size))
-    stiffness, damping = np.array(columns[:2]).T, np.array(columns[2:]).T
-    return np.sort_complex(np.linalg.eigvals(np.linalg.solve(damping, -stiffness)))
-
-
 @dataclass
 class Settling:
-    """A run: how it ended ("settled", "hang-up", "straightened", "moving" or "failed"), a sentence, times (s), h0, h1
-    (m), their rates (m/s), the moment (N m) that the constraint carries, evaluations of the film."""
+    """A run: how it ended ("settled", "hang-up", "moving" or "failed"), a sentence, times (s), h0 and h1 (m)."""
 
     status: str
     message: str
     time: np.ndarray
     mean_film: np.ndarray
     amplitude: np.ndarray
-    rates: np.ndarray
-    carried_moment: np.ndarray
-    evaluations: int
 
     @property
     def films(self) -> tuple[float, float]:
@@ -181,30 +162,19 @@ class Settling:
 
 
 class _Balance:
-    """What the integrator asks of a segment, for unknowns h0, h1 and the balance of force and one moment.
+    """What the integrator asks of a segment, for unknowns h0, h1 and the balance of force and sine moment."""
 
-    `balance` "sine" asks M_s = 4 R F_d / pi, "cosine" asks that the moment about the tilt axis vanishes.
-    """
+    algebraic, film, may_change = (), slice(0, 0), False
 
-    algebraic, film = (), slice(0, 0)
-    may_change, length = False, math.inf
-
-    def __init__(self, ring: Ring, force_ratio: float, films, balance: str):
-        self.ring, self.wedge, self.balance = ring, Wedge(ring), balance
-        self.friction = closed.friction_moment(ring.spring_force / force_ratio, ring.mean_radius)
+    def __init__(self, ring: Ring, force_ratio: float, films, duration: float):
+        self.ring, self.wedge, self.force_ratio, self.length = ring, Wedge(ring), force_ratio, duration
         # A last, idle unknown: the integrators leave the last one uncontrolled.
         self.scales = np.array([films[0], films[0], 1.0])
         self.last_rates = np.zeros(2)
-        self.shortest_period, self.memory = 2 * math.pi / ring.shaft_speed, 1.0
+        self.shortest_period = 2 * math.pi / ring.shaft_speed
 
     def longest_step(self):
         return math.inf
-
-    def balances(self, films, rates):
-        """The two balances, relative."""
-        force, sine, cosine = self.wedge(films, rates)
-        moment = sine / self.friction - 1.0 if self.balance == "sine" else cosine / self.friction
-        return np.array([force / self.ring.spring_force - 1.0, moment])
 
     def rates(self, films):
         """Rates (m/s) that balance force and moment at these films, sought from the last ones; None if there are none
@@ -213,7 +183,7 @@ class _Balance:
         if not 0 < films[1] < films[0]:
             return None
         for start in (self.last_rates / pace, np.zeros(2)):
-            found = root(lambda x: self.balances(films, x * pace), start, tol=1e-11)
+            found = root(lambda x: residuals(self.force_ratio, self.wedge, films, x * pace), start, tol=1e-11)
             if np.max(np.abs(found.fun)) < 1e-8:
                 self.last_rates = found.x * pace
                 return self.last_rates
@@ -243,88 +213,52 @@ class _Balance:
         raise SolverFailure(NO_RATES)
 
 
-def _run(balance: _Balance, start, duration: float, accuracy: float, ended, sentence) -> Settling:
-    """Steps of IDA until `ended(films, rates)` gives a verdict, the time is over or IDA gives up; of the verdict, what
-    IDA says, the time (s) and the films there `sentence` makes status and message."""
-    counts, y, balance.length = Counts(), np.array([*start, 0.0]), duration
-    times, films, rates, verdict, said = [0.0], [y[:2]], [], "", ""
-    try:
-        rates.append(balance.start(0.0, y)[1][:2])
-        tolerance = tolerance_for("ida", accuracy, balance.memory)
-        for t, ys, yps in METHODS["ida"](balance, 0.0, y, "ida", tolerance, counts):
-            times += list(t)
-            films += list(ys[:, :2])
-            rates += list(yps[:, :2])
-            verdict = ended(films[-1], rates[-1])
-            if verdict:
-                break
-    except SolverFailure as failure:
-        said = str(failure)
-        rates = rates or [np.full(2, np.nan)]
-    times, films, rates = np.array(times), np.array(films), np.array(rates)
-    carried = 2 if balance.balance == "sine" else 1
-    moments = [balance.wedge(film, rate)[carried] for film, rate in zip(films, rates, strict=True)]
-    status, message = sentence(verdict, said, times[-1], films[-1])
-    return Settling(status, message, times, films[:, 0], films[:, 1], rates, np.array(moments), counts.rhs)
-
-
-def _hung(force_ratio, edges, why, where) -> str:
-    return (
-        f"hang-up: spring and secondary-seal friction are not balanced with F_s/F_d = {force_ratio:.4g} (a balance "
-        f"needs {closed.least_force_ratio(edges):.4f}, one that attracts "
-        f"{closed.least_attracting_force_ratio(edges):.4f}): {why}; "
-        f"{where}.  Less friction, more spring or a start closer to the seat."
-    )
-
-
-def quasi_static(
-    force_ratio: float, start, ring: Ring | None = None, duration: float = 0.1, accuracy: float = 1e-5
-) -> Settling:
+def quasi_static(force_ratio: float, start, ring: Ring, duration: float = 0.1, accuracy: float = 1e-5) -> Settling:
     """h0, h1 in time under spring force and sine moment, squeeze included, from `start` = (h0, h1) in m.
 
     Settles on `closed_form.ludwig_allen.equilibrium` for q above 1.7132; below it the balance repels (below 1.6211
     there is none; under pressure both are less) and the run ends as "hang-up".  So does one that starts too thick
     (under pressure 1 % too thick may be enough), where friction holds it open: squeezing acts alike on both halves of
     the circle, so the sine moment is at most that of a film wet all around, twice the half film's.
-    `carried_moment` is the cosine moment: nobody balances it.
+    Nobody balances the moment about the tilt axis, which would straighten the ring: its guide carries that.
     """
-    ring = ring or Ring()
-    balance = _Balance(ring, force_ratio, start, "sine")
+    balance, y = _Balance(ring, force_ratio, start, duration), np.array([*start, 0.0])
+    times, films, verdict, said = [0.0], [y[:2]], "", ""
+    try:
+        tolerance = tolerance_for("ida", accuracy, 1.0)
+        for t, ys, yps in METHODS["ida"](balance, 0.0, y, "ida", tolerance, Counts()):
+            times += list(t)
+            films += list(ys[:, :2])
+            # No amplitude, no wedge: nothing holds the ring against its friction any more.
+            if films[-1][1] < NO_WEDGE * films[-1][0]:
+                verdict = "no wedge"
+            elif np.max(np.abs(yps[-1, :2])) < SETTLED * ring.shaft_speed * films[-1][0]:
+                verdict = "settled"
+            if verdict:
+                break
+    except SolverFailure as failure:
+        said = str(failure)
+    status, message = _ending(balance, verdict, said, times[-1], films[-1])
+    mean_film, amplitude = np.array(films).T
+    return Settling(status, message, np.array(times), mean_film, amplitude)
 
-    def ended(film, rate):
-        # No amplitude, no wedge: nothing holds the ring against its friction any more.
-        if film[1] < NO_WEDGE * film[0]:
-            return "no wedge"
-        return "settled" if np.max(np.abs(rate)) < SETTLED * ring.shaft_speed * film[0] else ""
 
-    def sentence(verdict, said, time, film):
-        where = f"at t = {time:.4g} s, h0 = {in_words('h_min', film[0])}, h1/h0 = {film[1] / film[0]:.3g}"
-        if verdict == "settled":
-            return "settled", f"settled {where}"
-        if said == NO_RATES or (said and balance.none_ahead(film)):
-            return "hang-up", _hung(force_ratio, ring.edges, NO_RATES, where)
-        if verdict == "no wedge":
-            return "hang-up", _hung(force_ratio, ring.edges, "the wedge is gone", where)
-        if force_ratio <= closed.least_force_ratio(ring.edges):
-            return "hang-up", _hung(force_ratio, ring.edges, said or "the film goes on moving", where)
+def _ending(balance, verdict, said, time, film) -> tuple[str, str]:
+    """Status and sentence of a run that ended with a verdict, or with what IDA `said`, at a time (s) and films."""
+    where = f"at t = {time:.4g} s, h0 = {in_words('h_min', film[0])}, h1/h0 = {film[1] / film[0]:.3g}"
+    if verdict == "settled":
+        return "settled", f"settled {where}"
+    ratio, edges = balance.force_ratio, balance.ring.edges
+    if said == NO_RATES or (said and balance.none_ahead(film)):
+        why = NO_RATES
+    elif verdict == "no wedge":
+        why = "the wedge is gone"
+    elif ratio <= closed.least_force_ratio(edges):
+        why = said or "the film goes on moving"
+    else:
         return (Status.FAILED, f"{said} ({where})") if said else ("moving", f"not settled {where}")
-
-    return _run(balance, start, duration, accuracy, ended, sentence)
-
-
-def guided(
-    force_ratio: float, start, ring: Ring | None = None, duration: float = 0.1, accuracy: float = 1e-5
-) -> Settling:
-    """A ring merely guided along the seat's direction: spring force and the moment about the tilt axis, which
-    straightens it; it does not go to Ludwig & Allen's film.  `carried_moment` is the sine moment, on the guide."""
-    balance = _Balance(ring or Ring(), force_ratio, start, "cosine")
-
-    def sentence(verdict, said, time, film):
-        where = f"at t = {time:.4g} s, h0 = {in_words('h_min', film[0])}, h1/h0 = {film[1] / film[0]:.3g}"
-        if said:
-            return Status.FAILED, f"{said} ({where})"
-        return (
-            "straightened" if film[1] < 0.1 * film[0] else "moving"
-        ), f"h1/h0 fell to {film[1] / film[0]:.3g} {where}"
-
-    return _run(balance, start, duration, accuracy, lambda *_: "", sentence)
+    return "hang-up", (
+        f"hang-up: spring and secondary-seal friction are not balanced with F_s/F_d = {ratio:.4g} (a balance needs "
+        f"{closed.least_force_ratio(edges):.4f}, one that attracts {closed.least_attracting_force_ratio(edges):.4f}): "
+        f"{why}; {where}.  Less friction, more spring or a start closer to the seat."
+    )

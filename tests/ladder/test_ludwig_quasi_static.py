@@ -17,10 +17,24 @@ def closed(q):
     return np.array(la.equilibrium(q, RING.group))
 
 
+def linearised(films, ring):
+    """Eigenvalues (1/s) of the two unknowns about (h0, h1), from central differences of the radial film."""
+    wedge = quasi_static.Wedge(ring)
+    step, pace = 1e-4 * (films[0] - films[1]), 0.5 * ring.shaft_speed
+    columns = []
+    for k in range(4):
+        size = step if k < 2 else step * pace
+        move = np.eye(4)[k] * size
+        up, down = (np.array(wedge(films + m[:2], m[2:])[:2]) for m in (move, -move))
+        columns.append((up - down) / (2 * size))
+    stiffness, damping = np.array(columns[:2]).T, np.array(columns[2:]).T
+    return np.sort_complex(np.linalg.eigvals(np.linalg.solve(damping, -stiffness)))
+
+
 @pytest.mark.parametrize("q", RATIOS)
 def test_static_residuals_vanish_at_the_closed_form_and_a_root_finder_returns_to_it(q):
     films = closed(q)
-    force, moment = quasi_static.static_residuals(q, films, RING)
+    force, moment = quasi_static.residuals(q, quasi_static.Wedge(RING), films)
     assert abs(force) < 1e-9
     assert moment == pytest.approx((RING.face_width / RING.mean_radius) ** 2 / 20, rel=1e-3)
     for start in ((1.3, 1.04), (0.5, 0.3), (3.0, 2.0)):
@@ -42,13 +56,14 @@ def test_quasi_static_run_settles_on_the_closed_form_from_above(q):
         assert run.status == "settled", run.message
         assert np.array(run.films) == pytest.approx(films, rel=1e-4)
         cosine = -RING.spring_force * RING.mean_radius * films[1] / films[0]
-        assert run.carried_moment[-1] == pytest.approx(cosine, rel=2e-3)
+        # Nobody balances it: the ring's guide carries it.
+        assert quasi_static.Wedge(RING)(run.films)[2] == pytest.approx(cosine, rel=2e-3)
 
 
 @pytest.mark.parametrize("q", RATIOS)
 def test_eigenvalues_of_the_radial_film_are_the_closed_form(q):
     expected = la.eigenvalues(q, 0.5 * RING.shaft_speed)
-    assert quasi_static.linearised(q, closed(q), RING) == pytest.approx(expected, rel=1e-5)
+    assert linearised(closed(q), RING) == pytest.approx(expected, rel=1e-5)
 
 
 def test_the_run_turns_and_decays_with_them():
@@ -75,14 +90,3 @@ def test_hang_up_is_named(q, start):
 def test_a_start_too_thick_hangs_too():
     run = quasi_static.quasi_static(3.0, 1.5 * closed(3.0), RING)
     assert run.status == "hang-up"
-
-
-@pytest.mark.parametrize("q", [2.0, 3.0, 5.0])
-def test_a_guided_ring_straightens(q):
-    """It obeys the moment about the tilt axis: from the very balance of Ludwig & Allen it goes straight, and on
-    doing so (h1 falls as h0^3 while the film is squeezed): 0.011 at q = 2 after 0.1 s."""
-    run = quasi_static.guided(q, closed(q), RING, duration=0.1)
-    assert run.status == "straightened", run.message
-    ratio = run.amplitude / run.mean_film
-    assert ratio[-1] < 0.04 and np.all(np.diff(ratio[run.time > 0.01]) < 0)
-    assert run.mean_film[-1] < 0.5 * run.mean_film[0]

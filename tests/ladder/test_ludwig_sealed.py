@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from test_ludwig_nodding import ARM, TILT, nodding
 from test_ludwig_nodding import RING as NODDING
+from test_ludwig_quasi_static import linearised
 from test_ludwig_released import RING, ready_scene
 
 from sealdyn.analysis import quasi_static
@@ -46,11 +47,11 @@ def test_balance_on_the_actual_film(name):
     """Force to rounding; sine moment to the arm that a face of finite width has longer, dR^2/(20 R^2) = 3.5e-6."""
     ring = under(NARROW, *EDGES[name])
     films = la.equilibrium(2.5, ring.group, ring.edges)
-    force, moment = quasi_static.static_residuals(2.5, films, ring)
+    force, moment = quasi_static.residuals(2.5, quasi_static.Wedge(ring), films)
     assert abs(force) < 1e-9 and moment == pytest.approx((ring.face_width / ring.mean_radius) ** 2 / 20, rel=0.2)
     assert quasi_static.static_root(2.5, films, ring) == pytest.approx(films, rel=3e-5)
     expected = la.eigenvalues(2.5, 0.5 * ring.shaft_speed, ring.edges)
-    assert quasi_static.linearised(2.5, films, ring) == pytest.approx(expected, rel=1e-5)
+    assert linearised(films, ring) == pytest.approx(expected, rel=1e-5)
 
 
 def test_balance_in_time():
