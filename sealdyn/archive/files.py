@@ -252,19 +252,14 @@ def _look_at_dataset(item, name):
 def main():
     """The other process."""
     bound_this_process()
-    path = Path(sys.argv[1])
     try:
-        look_through(path)
-    except Unsound as found:
-        print(found)
-        return 1
+        look_through(sys.argv[1])
+        return 0
     except MemoryError:
         print("it asks for more memory than there is")
-        return 1
     except Exception as error:
         print(" ".join(str(error).split()) or type(error).__name__)
-        return 1
-    return 0
+    return 1
 
 
 # --- format and seal -------------------------------------------------------------------------------------
@@ -317,8 +312,6 @@ def is_named(written: str, known: str) -> bool:
 def seal(file) -> None:
     """Seal an archive: its root attributes as they are, and its texts."""
     names = sorted(set(file.attrs) - {SEAL})
-    if SEAL in file.attrs:
-        del file.attrs[SEAL]
     file.attrs[SEAL] = f"{_digest(file, names)} {' '.join(names)}"
 
 
@@ -412,18 +405,28 @@ def is_full(error: OSError) -> bool:
 
 
 @contextmanager
-def hdf5_with_room(path: Path, size: int, mode: str = "w"):
-    """An open HDF5 file (`mode` "w" anew, "r+" as it is) that may grow to `size` bytes whatever others write meanwhile.
-    Raises OSError where the disk has no such room."""
-    _assure(path, size)
-    with h5py.File(path, mode) as file:
-        # Writing it anew has given back what it had.
-        _assure(path, size)
-        yield file
-        file.flush()
-        end = file.id.get_filesize()
-    if path.stat().st_size > end:
-        os.truncate(path, end)
+def hdf5_in_place_of(target: Path, size: int, source: Path | None = None, before=lambda: None):
+    """An open HDF5 file, new or a copy of `source`, that may grow to `size` bytes whatever others write meanwhile; when
+    the block ends without an error, and `before()` is called, it takes the place of `target` at once.  Raises OSError
+    where the disk has no such room."""
+    fresh = target.with_name(target.name + ".new")
+    try:
+        if source is not None:
+            shutil.copyfile(source, fresh)
+        _assure(fresh, size)
+        with h5py.File(fresh, "w" if source is None else "r+") as file:
+            # Writing it anew has given back what it had.
+            _assure(fresh, size)
+            yield file
+            file.flush()
+            end = file.id.get_filesize()
+        if fresh.stat().st_size > end:
+            os.truncate(fresh, end)
+        before()
+        os.replace(fresh, target)
+    except BaseException:
+        fresh.unlink(missing_ok=True)
+        raise
 
 
 def _assure(path: Path, size: int) -> None:

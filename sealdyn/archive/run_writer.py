@@ -10,8 +10,6 @@ and renamed again.  A run that is done before its rows have waited long enough i
 no lock and no luck.
 """
 
-import os
-import shutil
 import time as clock
 import zlib
 from contextlib import contextmanager
@@ -28,7 +26,7 @@ from .files import (
     ArchiveError,
     begin_writing,
     end_writing,
-    hdf5_with_room,
+    hdf5_in_place_of,
     mark_sound,
     partial_path,
     seal,
@@ -330,7 +328,7 @@ class ArchiveWriter:
     @contextmanager
     def _rewrite(self, target: Path, room: int, instants: int, source, attributes: dict, early: bool = False):
         """A complete new file that takes the place of `target` when the block ends; `early` as in `reserve`."""
-        with self._replacement(target) as fresh, hdf5_with_room(fresh, self._size(room, instants)) as file:
+        with hdf5_in_place_of(target, self._size(room, instants), before=self._close) as file:
             _write_attributes(file, {"format": FORMAT, **attributes})
             for name, series in self._series.items():
                 reserve(file, name, series, (room,), early)
@@ -349,31 +347,16 @@ class ArchiveWriter:
     def _shorten(self, target: Path):
         """A copy of the file without its spare room and restart group, which takes the place of `target` when the block
         ends."""
-        with self._replacement(target) as fresh:
-            shutil.copyfile(self.partial, fresh)
-            # Beside the rows.
-            more = self._size(0, 0)
-            with hdf5_with_room(fresh, fresh.stat().st_size + more, "r+") as file:
-                _write_attributes(file, self._attributes)
-                lengths = dict.fromkeys(self._series, self.rows)
-                lengths |= dict.fromkeys(self._fields.over_time() if self._fields else (), self.instants)
-                for name, length in lengths.items():
-                    item = h5py.h5d.open(file.id, name.encode())
-                    item.set_extent((length, *item.shape[1:]))
-                del file["restart"]
-                yield file
-
-    @contextmanager
-    def _replacement(self, target: Path):
-        """Where the file is written that takes the place of `target` at once when the block ends."""
-        fresh = target.with_name(target.name + ".new")
-        try:
-            yield fresh
-            self._close()
-            os.replace(fresh, target)
-        except BaseException:
-            fresh.unlink(missing_ok=True)
-            raise
+        size = self.partial.stat().st_size + self._size(0, 0)
+        with hdf5_in_place_of(target, size, self.partial, self._close) as file:
+            _write_attributes(file, self._attributes)
+            lengths = dict.fromkeys(self._series, self.rows)
+            lengths |= dict.fromkeys(self._fields.over_time() if self._fields else (), self.instants)
+            for name, length in lengths.items():
+                item = h5py.h5d.open(file.id, name.encode())
+                item.set_extent((length, *item.shape[1:]))
+            del file["restart"]
+            yield file
 
     def _size(self, rows: int, instants: int) -> int:
         """Bytes of a file with so many rows and instants, at most."""

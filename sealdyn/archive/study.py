@@ -17,7 +17,7 @@ from .files import (
     FILE,
     READING_ERRORS,
     ArchiveError,
-    hdf5_with_room,
+    hdf5_in_place_of,
     is_named,
     mark_sound,
     must_be_readable,
@@ -54,7 +54,6 @@ def write_study(
     Replaces an existing file only when complete; returns its path."""
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
-    fresh = path.with_name(path.name + ".new")
     found = list({v.name: v for v in answer_variables(answer, units, dict(along))}.values())
     texts = {"answer": json.dumps(answer), "panels": json.dumps(list(panels or ()))}
     attributes = {
@@ -73,18 +72,13 @@ def write_study(
     words = sum(map(len, texts.values())) + sum(len(_attribute(value)) for value in attributes.values())
     size = words + sum(v.values.nbytes + 16 * v.values.size for v in found)
     objects = sum(1 + v.values.ndim for v in found)
-    try:
-        with hdf5_with_room(fresh, 4 * size + FILE + DATASET * objects) as file:
-            for name, value in attributes.items():
-                file.attrs[name] = value if isinstance(value, int | float) else _attribute(value)
-            for name, text in texts.items():
-                file.create_dataset(f"json/{name}", data=text, dtype=h5py.string_dtype())
-            _write_variables(file, found)
-            seal(file)
-        os.replace(fresh, path)
-    except BaseException:
-        fresh.unlink(missing_ok=True)
-        raise
+    with hdf5_in_place_of(path, 4 * size + FILE + DATASET * objects) as file:
+        for name, value in attributes.items():
+            file.attrs[name] = value if isinstance(value, int | float) else _attribute(value)
+        for name, text in texts.items():
+            file.create_dataset(f"json/{name}", data=text, dtype=h5py.string_dtype())
+        _write_variables(file, found)
+        seal(file)
     mark_sound(path)
     return path
 

@@ -19,14 +19,14 @@ def shares(monkeypatch):
     found = []
 
     @contextmanager
-    def measured(path, size, mode="w"):
-        with files.hdf5_with_room(path, size, mode) as file:
+    def measured(target, size, *more, **how):
+        with files.hdf5_in_place_of(target, size, *more, **how) as file:
             yield file
             file.flush()
             found.append(file.id.get_filesize() / size)
 
-    monkeypatch.setattr(run_writer, "hdf5_with_room", measured)
-    monkeypatch.setattr(study, "hdf5_with_room", measured)
+    monkeypatch.setattr(run_writer, "hdf5_in_place_of", measured)
+    monkeypatch.setattr(study, "hdf5_in_place_of", measured)
     return found
 
 
