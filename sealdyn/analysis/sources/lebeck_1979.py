@@ -38,6 +38,7 @@ UNEXPLAINED = (
     "the report's number does not follow from its equations as printed, and no error of it is known: coarser cells "
     "and cavities that do not keep their liquid carry more, not less"
 )
+UNPRINTED = "no printed number: the film against an independent computation"
 
 
 @dataclass(frozen=True)
@@ -108,18 +109,23 @@ def checks() -> list[dict]:
 
 
 def _row(row, quantity, computed) -> dict:
-    (published, independent), tolerance = getattr(row, quantity), TOLERANCE[quantity]
-    apart = abs(float(computed / independent - 1.0))
+    told = {"source": SOURCE, "order": row.order, "amplitude": row.amplitude, "quantity": quantity}
+    return told | judged(*getattr(row, quantity), computed, TOLERANCE[quantity], UNPRINTED)
+
+
+def judged(published, independent, computed, tolerance: float, unprinted="", off=("unexplained", UNEXPLAINED)) -> dict:
+    """What a row says of three numbers, of which one of the first two may be None; its remark where nothing is printed,
+    and verdict and remark `off` the print."""
+    apart = None if independent is None else abs(float(computed / independent - 1.0))
     deviation = None if published is None else float(computed / published - 1.0)
     verdict, remark = "agrees", ""
-    if not apart <= tolerance:
+    if apart is not None and not apart <= tolerance:
         verdict, remark = "FAILED", "the film and an independent computation disagree"
     elif deviation is None:
-        remark = "no printed number: the film against an independent computation"
+        remark = unprinted
     elif not abs(deviation) <= tolerance:
-        verdict, remark = "unexplained", UNEXPLAINED
-    return {"source": SOURCE, "order": row.order, "amplitude": row.amplitude, "quantity": quantity,
-            "published": published, "computed": float(computed), "independent": independent, "deviation": deviation,
+        verdict, remark = off
+    return {"published": published, "computed": float(computed), "independent": independent, "deviation": deviation,
             "roads_apart": apart, "verdict": verdict, "remark": remark}  # fmt: skip
 
 

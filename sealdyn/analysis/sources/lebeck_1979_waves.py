@@ -86,18 +86,11 @@ def largest_on_grid(ring, curve) -> float:
 
 
 def _row(order, stiffness, quantity, published, computed, independent=None, explained="") -> dict:
-    apart = None if independent is None else abs(float(computed / independent - 1.0))
-    deviation = float(computed / published - 1.0)
-    verdict, remark = "agrees", ""
-    if apart is not None and not apart <= TOLERANCE:
-        verdict, remark = "FAILED", "the film and an independent computation disagree"
-    elif abs(deviation) > TOLERANCE:
-        verdict, remark = ("rounding", explained) if explained else ("unexplained", LOST)
-    if apart is None and verdict == "unexplained":
-        verdict, remark = "FAILED", "not what eq. 3-12 gives"
-    return {"source": SOURCE, "order": order, "stiffness": stiffness, "quantity": quantity, "published": published,
-            "computed": float(computed), "independent": independent, "deviation": deviation, "roads_apart": apart,
-            "verdict": verdict, "remark": remark}  # fmt: skip
+    off = ("rounding", explained) if explained else ("unexplained", LOST)
+    if independent is None:
+        off = "FAILED", "not what eq. 3-12 gives"
+    told = {"source": SOURCE, "order": order, "stiffness": stiffness, "quantity": quantity}
+    return told | base.judged(published, independent, computed, TOLERANCE, off=off)
 
 
 def place(row: dict) -> str:
