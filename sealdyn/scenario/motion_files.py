@@ -90,7 +90,7 @@ def with_columns(
         try:
             columns = {}
             if kept.get("file") != file:
-                columns = _columns((folder or Path()) / file, known, motion.get("titles"), _end(raw))
+                columns = file_columns((folder or Path()) / file, known, motion.get("titles"), _end(raw))
                 if table in over_time:
                     if len(columns) > 2:
                         found = f"{quoted(file)} with the columns {', '.join(columns)}"
@@ -200,12 +200,6 @@ def table_at(tables: Any, key: str) -> dict:
     return found if isinstance(found, dict) else {}
 
 
-def read_motion(path: Path, known=MOTION) -> dict[str, list[float]]:
-    """Columns of a file, SI: `time` (s) and what there is of `axial` (m), `tilt_x` and `tilt_y` (rad), or of other
-    `known` quantities {name: Quantity}.  Raises QuantityError."""
-    return {name: values for name, (values, _) in _columns(path, known).items()}
-
-
 def _a_file(known) -> str:
     first, *others = known
     names = f"{first} and its like"
@@ -217,9 +211,9 @@ def _a_file(known) -> str:
     return f"a CSV file with a line of names (or titles for it), {names} with units in brackets, or HDF5 (.h5)"
 
 
-def _columns(path: Path, known, titles=None, end: float | None = None) -> dict[str, tuple[list[float], str]]:
-    """Columns of a file, SI, and the unit in which it has them; `titles` of a CSV file without a line of names, `end`
-    (s) of the run to which a long record is cut."""
+def file_columns(path: Path, known, titles=None, end: float | None = None) -> dict[str, tuple[list[float], str]]:
+    """Columns of a file, SI, and the unit in which it has them, of the `known` quantities {name: Quantity}; `titles` of
+    a CSV file without a line of names, `end` (s) of the run to which a long record is cut.  Raises QuantityError."""
     a_file = _a_file(known)
     try:
         size = path.stat().st_size if path.is_file() else None

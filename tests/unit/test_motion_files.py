@@ -4,13 +4,17 @@ import h5py
 import numpy as np
 import pytest
 
-from sealdyn.scenario.motion_files import read_motion
+from sealdyn.scenario.motion_files import MOTION, file_columns
 from sealdyn.units import QuantityError
 
 TIME = np.arange(8) * 1e-3
 # Multiples of the smallest step of packed ones.
 AXIAL = np.array([0.0, 1.5, 4.5, -3.0, -5.0, 2.5, 0.5, 1.0])
 ROW = h5py.string_dtype()
+
+
+def read_motion(path):
+    return {name: values for name, (values, _) in file_columns(path, MOTION).items()}
 
 
 def hdf5(path, stored, **attributes):

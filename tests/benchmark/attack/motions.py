@@ -9,7 +9,7 @@ import h5py
 import numpy as np
 
 from sealdyn.archive import ArchiveError
-from sealdyn.scenario.motion_files import read_motion
+from sealdyn.scenario.motion_files import MOTION, file_columns
 from sealdyn.units import QuantityError
 
 from .outcome import LONGEST, place, read_in_forks, tried
@@ -45,7 +45,8 @@ def motions(ledger, seed, numbers, folder) -> None:
             _damage(chance, path)
         try:
             with read_in_forks(really=number % APART == 1):
-                found, outcome, how = tried(lambda path=path: read_motion(path))
+                columns, outcome, how = tried(lambda path=path: file_columns(path, MOTION))
+                found = columns and {name: values for name, (values, _) in columns.items()}
         except QuantityError:
             found, outcome, how = None, "refused", ""
         if how.startswith("QuantityError"):
