@@ -351,8 +351,7 @@ def show(
             names = ("status", "message", "rows", "summary", "scenario", "version", "libraries", "events")
             print(json.dumps({name: info.get(name) for name in names}))
         else:
-            for line in archive_lines(file, info):
-                say(line)
+            say(*archive_lines(file, info))
 
 
 def _show_study(file, csv, mat, as_json, table, units):
@@ -374,9 +373,7 @@ def _show_study(file, csv, mat, as_json, table, units):
     elif as_json:
         print(json.dumps(answer))
     else:
-        say(f"{study['name']}, study {study['study']}:")
-        for line in [*study_lines(answer), *tables_line(answer_tables(study))]:
-            say(line)
+        say(f"{study['name']}, study {study['study']}:", *study_lines(answer), *tables_line(answer_tables(study)))
 
 
 def _table_of(file, study, name) -> tuple[str, dict]:
@@ -513,8 +510,7 @@ def compare(
     if as_json:
         print(json.dumps(found))
     else:
-        for line in comparison_lines(found, _in_words(one)):
-            say(line)
+        say(*comparison_lines(found, _in_words(one)))
 
 
 def _in_words(file):
@@ -648,10 +644,8 @@ def study(
     if as_json:
         print(json.dumps(answer))
     else:
-        say(f"{scenario.name}, study {name}:")
-        for line in study_lines(answer):
-            say(line)
-        say("  files: " + ", ".join(answer[k] for k in ("archive", "figure") if answer.get(k)))
+        files = "  files: " + ", ".join(answer[k] for k in ("archive", "figure") if answer.get(k))
+        say(f"{scenario.name}, study {name}:", *study_lines(answer), files)
     raise typer.Exit(EXIT[answer["status"]])
 
 
