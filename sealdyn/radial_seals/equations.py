@@ -63,7 +63,7 @@ def spring(y, p, j):
     return force
 
 
-@inner_kernel()
+@outer_kernel()
 def rates(tau, y, p, yp):
     """The right-hand side `yp` at segment time `tau` (s) and unknowns `y`."""
     n, here = int(p[COUNT]), np.zeros(3)
@@ -98,12 +98,6 @@ def rates_at(tau, y_at, yp_at, data):
     size = block[0]
     rates(tau, carray(floats(y_at), size), array(block, PARAMETERS), carray(floats(yp_at), size))
     return 0
-
-
-@outer_kernel()
-def right_hand_side(tau, y, p, yp):
-    """The same from Python."""
-    rates(tau, y, p, yp)
 
 
 @outer_kernel()

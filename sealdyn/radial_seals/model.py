@@ -103,7 +103,7 @@ class RadialSegment:
 
     def rhs(self, tau, y, yp):
         """Right-hand side `yp` at segment time `tau` (s)."""
-        equations.right_hand_side(tau, y, self.p, yp)
+        equations.rates(tau, y, self.p, yp)
 
     def jacobian(self, tau, y, yp, jac):
         """d y'/d y (size, size); works feed nothing back."""
