@@ -166,16 +166,17 @@ def unknown_unit(text: str) -> str:
     if UNCLEAR.search(text):
         return f"'{text}' is unclear: which part divides, brackets say, as in J/(kg*K)"
     for word in re.findall(r"[^\W\d]+", text):
-        if not _is_unit(word):
+        if not is_unit(word):
             same = [name for name in _names() if name.lower() == word.lower()]
             near = same or spelled_like(word, _names(), 1, 0.5)
             return f"unknown unit '{word}'" + (f", nearest '{near[0]}'" if near else "")
     return f"'{text}' is no unit"
 
 
-def _is_unit(word: str) -> bool:
+def is_unit(text: str) -> bool:
+    """Whether a text is a unit."""
     try:
-        dimension_and_factor(word)
+        dimension_and_factor(text)
     except ValueError:
         return False
     return True

@@ -259,7 +259,7 @@ class VaryingQuantity(ReadFromFile):
             if len(value[key]) > MOST_POINTS:
                 few = f"at most {MOST_POINTS} points, a run starts anew at each"
                 raise QuantityError(f"a table of {len(value[key])} points", few)
-        return self._checked(_entries(SECONDS, value["time"], "time"), _entries(self.quantity, value["value"], "value"))
+        return self._checked(entries(SECONDS, value["time"], "time"), entries(self.quantity, value["value"], "value"))
 
     @staticmethod
     def _checked(time: tuple[float, ...], value: tuple[float, ...]) -> PiecewiseLinear:
@@ -290,7 +290,8 @@ class VaryingQuantity(ReadFromFile):
         }
 
 
-def _entries(quantity: Quantity, column: list, name: str = "") -> tuple[float, ...]:
+def entries(quantity: Quantity, column: list, name: str = "") -> tuple[float, ...]:
+    """SI values of the entries of a list, called `name` in messages.  Raises `QuantityError` that tells which."""
     values = []
     for k, entry in enumerate(column):
         try:
@@ -334,7 +335,7 @@ class ListedQuantity(ReadFromFile):
             raise QuantityError(quoted(value), self.expected())
         if len(value) > MOST_LISTED:
             raise QuantityError(f"a list of {len(value)}", f"at most {MOST_LISTED}")
-        return _entries(self.quantity, value)
+        return entries(self.quantity, value)
 
     def expected(self) -> str:
         """What the key expects, in words, for a message."""

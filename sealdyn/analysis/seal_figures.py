@@ -14,7 +14,7 @@ from ..dynamics.intervals import constant_and_slope, largest_value
 from ..dynamics.model import Model
 from ..faces.contact import contact_load_and_friction
 from ..faces.geometry import CONTACT_TORQUE, FLOW_INNER, FLOW_OUTER, SPIN_DIFFERENCE
-from ..numerics.piecewise_linear import PiecewiseLinear, initially, points
+from ..numerics.piecewise_linear import PiecewiseLinear, initially, points, value_at
 from ..scene.application import Application
 from ..scene.rings import RING_NAMES
 from ..scene.scene import Scene
@@ -204,11 +204,7 @@ def _largest_difference(one, other) -> float:
     times = {t for q in (one, other) if isinstance(q, PiecewiseLinear) for t in q.time} | {0.0}
     # Of a step also what was before it.
     times |= {math.nextafter(t, -math.inf) for t in times}
-    return max(abs(_at(one, t) - _at(other, t)) for t in times)
-
-
-def _at(quantity, t: float) -> float:
-    return quantity.at(t) if isinstance(quantity, PiecewiseLinear) else float(quantity)
+    return max(abs(value_at(one, t) - value_at(other, t)) for t in times)
 
 
 # --- rings on their springs and dampers, without the film ------------------------------------------------

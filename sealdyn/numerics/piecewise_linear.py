@@ -33,9 +33,14 @@ class PiecewiseLinear:
         return tuple(sorted(set(self.time)))
 
 
+def value_at(quantity, time: float) -> float:
+    """Value at a time (s) of a number or a function of time, in its own unit."""
+    return quantity.at(time) if isinstance(quantity, PiecewiseLinear) else float(quantity)
+
+
 def initially(quantity) -> float:
     """Value at time zero of a number or a function of time, in its own unit."""
-    return quantity.at(0.0) if isinstance(quantity, PiecewiseLinear) else float(quantity)
+    return value_at(quantity, 0.0)
 
 
 def points(quantity) -> tuple[float, ...]:

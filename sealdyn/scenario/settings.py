@@ -16,7 +16,7 @@ from pydantic import TypeAdapter, ValidationError
 from ..scene import scene as scenes
 from ..scene.checks import check_scene
 from ..scene.scene import SceneError
-from ..unit_names import dimension_and_factor
+from ..unit_names import dimension_and_factor, is_unit
 from ..units import Quantity, quantity_of, quoted
 from .errors import ScenarioError, nearest_of, scene_errors_of
 from .overrides import refuse_unbounded
@@ -219,7 +219,7 @@ def values_in_si(scenario: Scenario, words: str, unit: str, where: str) -> list[
     if (
         written is None
         or written in SCALES
-        or (written and not (_is_unit(written) and _is_unit(unit) and _one_kind(written, unit)))
+        or (written and not (is_unit(written) and is_unit(unit) and _one_kind(written, unit)))
     ):
         expected = f'numbers, "a, b, c" or "from:to:count[:log]", in {unit} or its like'
         raise ScenarioError(scenario.name, where, f'"{words}"', expected)
@@ -227,22 +227,12 @@ def values_in_si(scenario: Scenario, words: str, unit: str, where: str) -> list[
     return [float(f"{factor * v:.12g}") for v in given["values"]]
 
 
-def _is_unit(words: str) -> bool:
-    if not words:
-        return True
-    try:
-        dimension_and_factor(words)
-    except ValueError:
-        return False
-    return True
-
-
 def _alike(matches) -> bool:
     """Whether the units written are one, or convertible into each other: those that count from another zero are not."""
     units = {m[2] for m in matches if m[2]}
     if len(units) < 2:
         return True
-    return not units & SCALES and all(map(_is_unit, units)) and _one_kind(*units)
+    return not units & SCALES and all(map(is_unit, units)) and _one_kind(*units)
 
 
 def _one_kind(*units) -> bool:
@@ -256,7 +246,7 @@ def _in_one_unit(matches) -> tuple[list[float], str]:
 
     def number(match):
         own = match[2]
-        if own in ("", unit) or not (_is_unit(own) and _is_unit(unit)):
+        if own in ("", unit) or not (is_unit(own) and is_unit(unit)):
             return float(match[1])
         return float(match[1]) * float(dimension_and_factor(own)[1] / dimension_and_factor(unit)[1])
 

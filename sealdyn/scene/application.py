@@ -8,7 +8,7 @@ import re
 from dataclasses import dataclass, field
 from typing import Annotated, Any, Literal
 
-from ..units import Frequency, Pressure, Quantity, QuantityError, Temperature, Usual, VolumeFlow, quoted
+from ..units import Frequency, Pressure, Quantity, QuantityError, Temperature, Usual, VolumeFlow, entries, quoted
 from . import Strict
 
 Size = Annotated[float, Quantity("length", "m", '"40 mm"', (), 0, True, Usual(1e-3, 10.0, "mm"))]
@@ -41,13 +41,10 @@ class Frequencies(Quantity):
 
     def read(self, value: Any) -> tuple[float, ...]:
         """Floats in Hz.  Raises `QuantityError`."""
-        found = []
-        for n, entry in enumerate(value if isinstance(value, list | tuple) else [value]):
-            try:
-                found.append(FREQUENCY.read(entry))
-            except QuantityError as error:
-                raise QuantityError(f"{error.found} as entry {n + 1}", self.expected()) from None
-        return tuple(found)
+        try:
+            return entries(FREQUENCY, value if isinstance(value, list | tuple) else [value])
+        except QuantityError as error:
+            raise QuantityError(error.found, self.expected()) from None
 
     def __get_pydantic_json_schema__(self, schema, handler) -> dict:
         entry = FREQUENCY.__get_pydantic_json_schema__(None, None)

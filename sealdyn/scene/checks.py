@@ -4,7 +4,7 @@ import cmath
 import math
 from dataclasses import fields
 
-from ..numerics.piecewise_linear import PiecewiseLinear, initially, points
+from ..numerics.piecewise_linear import PiecewiseLinear, initially, points, value_at
 from ..units import Temperature, Viscosity
 from .excitation import ACCELERATIONS, MOTION_COLUMNS, acceleration_errors, random_errors, sample_errors
 from .film import Film, aligned_gaps, coned, follows_speed, pads_errors, profile_errors, reynolds_errors
@@ -19,7 +19,7 @@ from .forces import (
     secondary_seal_errors,
 )
 from .patterns import grooves_errors, grooves_of, waves_of, waviness_errors
-from .rings import RING_NAMES, body_errors, elastic_errors
+from .rings import OF_MASS, RING_NAMES, body_errors, elastic_errors
 from .scene import SceneError
 from .sweep import sweep_errors
 from .tabulated import tabulated_errors
@@ -39,15 +39,14 @@ def scene_errors(scene, run) -> list[SceneError]:
     several parts only where each is possible."""
     bad = _broken(_film, scene) or _broken(_profile, scene)
     bad += _broken(_cavitation, scene.film) + _broken(_liquid if scene.film.gas is None else _gas, scene.film)
-    bad += [SceneError(*error) for error in (*waviness_errors(scene), *elastic_errors(scene), *grooves_errors(scene))]
-    bad += [SceneError(*error) for error in (heat_errors(scene) if scene.film.heat is not None else ())]
-    bad += [SceneError(*error) for error in (tabulated_errors(scene) if scene.film.model == "tabulated" else ())]
+    for errors in (waviness_errors, elastic_errors, grooves_errors, heat_errors, tabulated_errors):
+        bad += [SceneError(*error) for error in errors(scene)]
     bad += _broken(_closing, scene)
     for name, ring in (("stator", scene.stator), ("rotor", scene.rotor)):
         bad += _broken(_ring, name, ring) + _broken(check_no_step, name, ring)
     bad += _broken(_seals_alike, scene)
     if scene.contact:
-        bad += [SceneError(f"contact.{key}", *words) for key, *words in contact_errors(scene.contact)]
+        bad += _below("contact", contact_errors(scene.contact))
         options = scene.film.reynolds
         if scene.contact.law == "plateaus" and options and options.roughness == "patir-cheng":
             found = f'"{options.roughness}", with contact.law = "{scene.contact.law}"'
@@ -56,14 +55,12 @@ def scene_errors(scene, run) -> list[SceneError]:
         expected = "[rotor.support] or [stator.support]: the ring that floats"
         bad.append(SceneError("rotor.support", "no support on either ring", expected))
     for name, table in (("housing", scene.housing), ("shaft", scene.shaft)):
-        given = (*MOTION_COLUMNS, *ACCELERATIONS)
-        wrong = (sample_errors(table.motion, given) or acceleration_errors(table.motion)) if table.motion else ()
-        for key, *words in wrong:
-            bad.append(SceneError(f"{name}.motion.{key}", *words))
+        if table.motion:
+            given = (*MOTION_COLUMNS, *ACCELERATIONS)
+            bad += _below(f"{name}.motion", sample_errors(table.motion, given) or acceleration_errors(table.motion))
     for name, ring in (("stator", scene.stator), ("rotor", scene.rotor)):
-        samples = ring.load.samples if ring.load else None
-        for key, *words in sample_errors(samples, LOAD_COLUMNS) if samples else ():
-            bad.append(SceneError(f"{name}.load.samples.{key}", *words))
+        if ring.load and ring.load.samples:
+            bad += _below(f"{name}.load.samples", sample_errors(ring.load.samples, LOAD_COLUMNS))
     bad += _broken(_vibrations, scene.housing) + _broken(_run, scene.shaft, run)
     if not bad and (run.start == "rest" or (run.start == "auto" and scene.initial.given)):
         bad += _broken(_open_at_start, scene)
@@ -79,6 +76,17 @@ def _broken(rule, *parts) -> list[SceneError]:
     return []
 
 
+def _below(table: str, errors) -> list[SceneError]:
+    """The `errors` (key, found, expected) of a table, its dotted name before their keys."""
+    return [SceneError(f"{table}.{key}", *words) for key, *words in errors]
+
+
+def _refuse(table: str, errors) -> None:
+    """Raises the first of them."""
+    for error in _below(table, errors):
+        raise error
+
+
 def _film(scene) -> None:
     film = scene.film
     _coning(scene)
@@ -92,8 +100,7 @@ def _film(scene) -> None:
             f"{film.inner_radius:g} m",
             f"less than outer_radius = {film.outer_radius:g} m",
         )
-    for key, found, expected in pads_errors(film):
-        raise SceneError(f"film.{key}", found, expected)
+    _refuse("film", pads_errors(film))
     if not 0 < film.floor < 0.5:
         raise SceneError("film.floor", f"{film.floor:g}", "a fraction of the clearance between 0 and 0.5")
     if film.clearance is not None and film.profile is None:
@@ -109,8 +116,7 @@ def _film(scene) -> None:
     if not 0.0 <= film.offset < width:
         raise SceneError("film.offset", f"{film.offset:g} m", f"at least 0 and less than the face is wide, {width:g} m")
     if film.model == "reynolds":
-        for key, found, expected in reynolds_errors(film):
-            raise SceneError(f"film.{key}", found, expected)
+        _refuse("film", reynolds_errors(film))
 
 
 def _coning(scene) -> None:
@@ -132,7 +138,7 @@ def _coning(scene) -> None:
     if film.coning_per_pressure:
         follows += ["outer_pressure", "inner_pressure"]
         times = {t for p in (film.outer_pressure, film.inner_pressure) for t in getattr(p, "time", (0.0,))}
-        sealed = [_at(film.outer_pressure, t) - _at(film.inner_pressure, t) for t in times]
+        sealed = [value_at(film.outer_pressure, t) - value_at(film.inner_pressure, t) for t in times]
         if min(sealed) < 0.0 < max(sealed):
             found = "a sealed pressure that changes sides"
             raise SceneError("film.coning_per_pressure", found, "the higher pressure always on one side")
@@ -142,8 +148,7 @@ def _coning(scene) -> None:
 
 
 def _liquid(film) -> None:
-    for key, *words in liquid_errors(film) if film.liquid is not None else ():
-        raise SceneError(f"film.{key}", *words)
+    _refuse("film", liquid_errors(film))
     if film.viscosity is None and film.liquid is None:
         raise SceneError("film.viscosity", "nothing", Viscosity.__metadata__[0].expected())
     for key in ("temperature", "gas_dam", "gas_reynolds"):
@@ -158,8 +163,7 @@ def _liquid(film) -> None:
 
 def _gas(film) -> None:
     gas = gas_of(film)
-    for key, *words in liquid_errors(film) if film.liquid is not None else ():
-        raise SceneError(f"film.{key}", *words)
+    _refuse("film", liquid_errors(film))
     if not 1.0 < gas.heat_ratio <= 5.0 / 3.0 + 1e-9:
         raise SceneError("film.gas.heat_ratio", f"{gas.heat_ratio:g}", "a ratio above 1, at most 5/3")
     if film.temperature is None:
@@ -196,8 +200,7 @@ def _names(words) -> str:
 
 def _profile(scene) -> None:
     film = scene.film
-    for key, found, expected in profile_errors(film):
-        raise SceneError(f"film.{key}", found, expected)
+    _refuse("film", profile_errors(film))
     if film.clearance is not None and film.profile is not None:
         least, radius = min((h, r) for r, h in aligned_gaps(coned(scene), film.clearance))
         if not least > _lowest(scene):
@@ -241,8 +244,7 @@ def _closing(scene) -> None:
 
 
 def _ring(name: str, ring) -> None:
-    for key, found, expected in body_errors(ring.body) if ring.body else ():
-        raise SceneError(f"{name}.body.{key}", found, expected)
+    _refuse(f"{name}.body", body_errors(ring.body) if ring.body else ())
     if ring.polar_inertia > 2 * ring.transverse_inertia and not ring.unphysical_inertia:
         raise SceneError(
             f"{name}.polar_inertia",
@@ -273,10 +275,6 @@ def _ring(name: str, ring) -> None:
         raise SceneError(f"{key}.radius", f"{support.radius:g} m", "a length > 0")
 
 
-def _at(quantity, time: float) -> float:
-    return quantity.at(time) if isinstance(quantity, PiecewiseLinear) else quantity
-
-
 def check_no_step(name: str, table, keys=("runout", "misalignment")) -> None:
     """Raises `SceneError` if one of the `keys` of the table called `name`, a ring's or one that its coning follows, has
     a step in time: a face cannot be somewhere else at once, the film, or the support's damper, would push without
@@ -294,8 +292,7 @@ def check_no_step(name: str, table, keys=("runout", "misalignment")) -> None:
 
 def _secondary_seal(name: str, ring) -> None:
     key = f"{name}.secondary_seal"
-    for part, found, expected in secondary_seal_errors(ring.secondary_seal):
-        raise SceneError(f"{key}.{part}", found, expected)
+    _refuse(key, secondary_seal_errors(ring.secondary_seal))
     if ring.support and (ring.mass == 0 or ring.transverse_inertia == 0):
         raise SceneError(key, "a ring without mass or inertia", "mass and transverse_inertia > 0 to stick and slip")
 
@@ -310,21 +307,17 @@ def _seals_alike(scene) -> None:
 
 
 def _vibrations(housing) -> None:
-    for kind in ("axial", "angular"):
-        for n, vibration in enumerate(getattr(housing, kind)):
-            if (vibration.displacement is None) == (vibration.acceleration is None):
-                found = "neither" if vibration.displacement is None else "both"
-                raise SceneError(
-                    f"housing.{kind}.{n}.displacement", found, "exactly one of displacement and acceleration"
-                )
-    for kind in ("axial_random", "angular_random"):
-        for n, vibration in enumerate(getattr(housing, kind)):
-            for key, *words in random_errors(vibration):
-                raise SceneError(f"housing.{kind}.{n}.{key}", *words)
-    for kind in ("axial_sweep", "angular_sweep"):
-        for n, sweep in enumerate(getattr(housing, kind)):
-            for key, *words in sweep_errors(sweep):
-                raise SceneError(f"housing.{kind}.{n}.{key}", *words)
+    for kind, errors in (("", _tone_errors), ("_random", random_errors), ("_sweep", sweep_errors)):
+        for name in (f"axial{kind}", f"angular{kind}"):
+            for n, vibration in enumerate(getattr(housing, name)):
+                _refuse(f"housing.{name}.{n}", errors(vibration))
+
+
+def _tone_errors(tone) -> list[tuple[str, str, str]]:
+    if (tone.displacement is None) != (tone.acceleration is None):
+        return []
+    found = "neither" if tone.displacement is None else "both"
+    return [("displacement", found, "exactly one of displacement and acceleration")]
 
 
 def _run(shaft, run) -> None:
@@ -387,7 +380,7 @@ def turns_of(speed) -> float:
     return angle / (2 * math.pi)
 
 
-RIGID_LEAVES = ("mass", "transverse_inertia", "polar_inertia", "body", "mass_centre", "unphysical_inertia", "load")
+RIGID_LEAVES = (*OF_MASS, "load")
 
 
 def _others_options(table, kind: type) -> list[str]:

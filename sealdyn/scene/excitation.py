@@ -47,9 +47,8 @@ NEAREST_SAMPLES = 1e-3
 
 
 @dataclass(frozen=True)
-class Motion(Strict):
-    """Motion of the shaft under the rotor, or of the housing under the stator, given by samples, along the spline
-    of fifth degree through them; it adds to runout, whirl and vibration."""
+class Samples(Strict):
+    """What tables of samples over time have in common."""
 
     file: str | None = field(default=None, compare=False)
     """CSV or HDF5 with these columns, beside the scenario; columns that are given here are not read from it."""
@@ -57,6 +56,13 @@ class Motion(Strict):
     """Names of the columns of a CSV file that has no line of them, "time (ms)" and the like, "" for one not read."""
     time: Listed[Sample] = ()
     """Of the samples, increasing, from 0 or before to the end of the run or beyond."""
+
+
+@dataclass(frozen=True)
+class Motion(Samples):
+    """Motion of the shaft under the rotor, or of the housing under the stator, given by samples, along the spline
+    of fifth degree through them; it adds to runout, whirl and vibration."""
+
     axial: Listed[Displacement] | None = None
     """Displacement along the shaft axis; none without it."""
     tilt_x: Listed[Tilt] | None = None

@@ -119,8 +119,11 @@ class Pads(Strict):
 
 def edge_of(pads: Pads) -> float:
     """Width (m) of the flanks."""
-    sides = pads.outer_radius - pads.inner_radius, pads.angle * 0.5 * (pads.inner_radius + pads.outer_radius)
-    return SHARP * min(sides) if pads.edge is None else pads.edge
+    return SHARP * _shorter_side(pads) if pads.edge is None else pads.edge
+
+
+def _shorter_side(pads: Pads) -> float:
+    return min(pads.outer_radius - pads.inner_radius, pads.angle * 0.5 * (pads.inner_radius + pads.outer_radius))
 
 
 def depth_of(film, r, theta) -> np.ndarray:
@@ -161,9 +164,9 @@ def pads_errors(film) -> list[tuple[str, str, str]]:
             expected = f"radii that increase, between {film.inner_radius:g} and {film.outer_radius:g} m"
             bad.append((f"{key}.inner_radius", found, expected))
             continue
-        sides = pads.outer_radius - pads.inner_radius, pads.angle * 0.5 * (pads.inner_radius + pads.outer_radius)
-        if pads.edge is not None and not 0.0 < pads.edge < 0.25 * min(sides):
-            expected = f"a width above 0 and below {0.25 * min(sides):.4g} m, a quarter of the pad's shorter side"
+        widest = 0.25 * _shorter_side(pads)
+        if pads.edge is not None and not 0.0 < pads.edge < widest:
+            expected = f"a width above 0 and below {widest:.4g} m, a quarter of the pad's shorter side"
             bad.append((f"{key}.edge", f"{pads.edge:g} m", expected))
     return bad
 

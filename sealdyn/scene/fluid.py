@@ -22,6 +22,7 @@ from ..units import (
     Pressure,
     Quantity,
     QuantityError,
+    ReadFromFile,
     SpecificHeat,
     Temperature,
     TemperatureScale,
@@ -162,7 +163,7 @@ KINEMATIC = Quantity("kinematic viscosity", "m^2/s", '"32 mm^2/s"', (), 0, True)
 FEWEST, MOST = 2, 100
 
 
-class ViscosityPoints:
+class ViscosityPoints(ReadFromFile):
     """Viscosities at temperatures, [[T, viscosity], ...]: dynamic or kinematic ones, as their unit says."""
 
     def read(self, value: Any) -> tuple[tuple[float, float, str], ...]:
@@ -202,11 +203,6 @@ class ViscosityPoints:
     def expected(self) -> str:
         """What the key expects, in words, for a message."""
         return 'pairs of temperature and viscosity, e.g. [["40 degC", "32 mm^2/s"], ["100 degC", "5.4 mm^2/s"]]'
-
-    def __get_pydantic_core_schema__(self, source, handler):
-        from pydantic_core import core_schema
-
-        return core_schema.no_info_plain_validator_function(self.read)
 
     def __get_pydantic_json_schema__(self, schema, handler) -> dict:
         return {"description": self.expected(), "type": "array", "minItems": FEWEST, "maxItems": MOST}
@@ -332,8 +328,10 @@ def in_numbers(film, rise: float = 0.0, **changes):
 
 
 def liquid_errors(film) -> list[tuple[str, str, str]]:
-    """What a `Film` table with a liquid cannot have: (key below film, found, expected)."""
+    """What a `Film` table with a liquid cannot have: (key below film, found, expected), empty without one."""
     liquid = liquid_of(film)
+    if liquid is None:
+        return []
     if film.gas is not None:
         return [("liquid", "a liquid beside film.gas", "one of them")]
     bad = []
@@ -411,8 +409,10 @@ def _body_errors(scene, name: str, ring) -> list[tuple[str, str, str]]:
 
 
 def heat_errors(scene) -> list[tuple[str, str, str]]:
-    """What cannot be in `[film.heat]` of a Scene: (key, found, expected)."""
+    """What cannot be in `[film.heat]` of a Scene: (key, found, expected), empty without it."""
     film, heat, bad = scene.film, scene.film.heat, []
+    if heat is None:
+        return bad
     if film.gas is not None:
         return [("film.heat", "heat of a film of gas", "a liquid: across a film of gas the faces differ")]
     if film.model == "linear" and not isinstance(film.coefficients, str):

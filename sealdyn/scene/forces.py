@@ -22,7 +22,6 @@ from ..units import (
     Moment,
     Radius,
     Roughness,
-    Sample,
     Share,
     Stiffness,
     Stress,
@@ -31,6 +30,7 @@ from ..units import (
     WearCoefficient,
 )
 from . import Strict
+from .excitation import Samples
 
 # Half height of Christensen's surface, and the reach of a Gaussian one, in rms roughnesses.
 HALF_HEIGHT, REACH = 3.0, 5.0
@@ -174,15 +174,9 @@ class LoadTone(Strict):
 
 
 @dataclass(frozen=True)
-class LoadSamples(Strict):
+class LoadSamples(Samples):
     """Force and moments of a record, along the spline of fifth degree through its samples."""
 
-    file: str | None = field(default=None, compare=False)
-    """CSV or HDF5 with these columns, beside the scenario; columns that are given here are not read from it."""
-    titles: list[str] | None = field(default=None, compare=False)
-    """Names of the columns of a CSV file that has no line of them, "time (ms)" and the like, "" for one not read."""
-    time: Listed[Sample] = ()
-    """Of the samples, increasing, from 0 or before to the end of the run or beyond."""
     force: Listed[Force] | None = None
     """Along the shaft axis; none without it."""
     moment_x: Listed[Moment] | None = None

@@ -253,11 +253,7 @@ def _beside_errors(scene) -> list[tuple[str, str, str]]:
         "stator.elastic": scene.stator.elastic, "stator.secondary_seal": scene.stator.secondary_seal,
         "rotor.secondary_seal": scene.rotor.secondary_seal, "stator.waviness": waves_of(scene),
     }  # fmt: skip
-    bad = [
-        (key, "a value", "nothing")
-        for key, value in has.items()
-        if not (value is None or value is False or value == [])
-    ]
+    bad = [(key, "a value", "nothing") for key, value in has.items() if value]
     if gas and scene.contact and not contact_errors(scene.contact):
         _, touch, flat = contact_thresholds(scene.contact)
         name, (one,) = grooves_of(scene)

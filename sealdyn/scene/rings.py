@@ -2,7 +2,7 @@
 drawing, a ring that bends."""
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import Annotated, Literal, NamedTuple
 
 from ..units import (
@@ -313,8 +313,8 @@ class AxialRunout(Strict):
 
 
 @dataclass(frozen=True)
-class Stator(Strict):
-    """The ring that does not turn (unless `speed` says so).  With a support it floats."""
+class RingInertia(Strict):
+    """What both rings have of mass."""
 
     mass: Mass = 0.0
     """Mass of the ring, if it floats; or a table `body`."""
@@ -328,6 +328,15 @@ class Stator(Strict):
     """Centre of mass off the point about which the ring tilts: unbalance and weight."""
     unphysical_inertia: bool = False
     """Allow a polar inertia beyond twice the transverse one, for comparison with published numbers."""
+
+
+OF_MASS = tuple(f.name for f in fields(RingInertia))
+
+
+@dataclass(frozen=True)
+class Stator(RingInertia):
+    """The ring that does not turn (unless `speed` says so).  With a support it floats."""
+
     misalignment: Varying[Tilt] = 0.0
     """Tilt of the seat of a rigid stator, or of the unloaded face in its springs if it floats."""
     misalignment_direction: Angle = 0.0
@@ -349,22 +358,10 @@ class Stator(Strict):
 
 
 @dataclass(frozen=True)
-class Rotor(Strict):
+class Rotor(RingInertia):
     """The ring that turns with the shaft.  With a support it floats and has its own `misalignment`;
     rigid it has a `runout`.  Both turn with the shaft."""
 
-    mass: Mass = 0.0
-    """Mass of the ring, if it floats; or a table `body`."""
-    transverse_inertia: Inertia = 0.0
-    """Moment of inertia about a diameter; with mass 0 and inertias 0 the ring has no inertia."""
-    polar_inertia: Inertia = 0.0
-    """Moment of inertia about the shaft axis, at most twice the transverse one."""
-    body: Body | None = None
-    """The ring from its drawing, in place of mass and inertias."""
-    mass_centre: MassCentre | None = None
-    """Centre of mass off the point about which the ring tilts: unbalance and weight."""
-    unphysical_inertia: bool = False
-    """Allow a polar inertia beyond twice the transverse one, for comparison with published numbers."""
     misalignment: Varying[Tilt] = 0.0
     """Tilt of the unloaded face of a floating rotor in its springs; turns with the shaft."""
     misalignment_phase: Angle = 0.0

@@ -17,7 +17,7 @@ from . import Strict
 from .excitation import ACCELERATIONS, MOTION_COLUMNS, Housing, Shaft
 from .film import Film
 from .forces import LOAD_COLUMNS, Contact, standing
-from .rings import INERTIAL, RING_NAMES, Rotor, Stator, stuck_support, with_inertia
+from .rings import INERTIAL, OF_MASS, RING_NAMES, Rotor, Stator, stuck_support, with_inertia
 from .tabulated import COLUMNS
 
 
@@ -131,8 +131,7 @@ LEFT_OUT = {
     "contact": ("contact", "stator.secondary_seal", "rotor.secondary_seal"),
     "secondary-seal": ("stator.secondary_seal", "rotor.secondary_seal"),
 }
-CARRIED = ("mass", "transverse_inertia", "polar_inertia", "body", "mass_centre", "unphysical_inertia", "misalignment",
-           "support", "secondary_seal", "load")  # fmt: skip
+CARRIED = (*OF_MASS, "misalignment", "support", "secondary_seal", "load")
 # What a face keeps, whichever side its ring is on.
 FACE = ("waviness", "grooves")
 
@@ -269,16 +268,12 @@ def tilting(scene: Scene) -> Scene:
 
 
 def _constant(scene: Scene, value_of: Callable[[PiecewiseLinear], float]) -> Scene:
-    for name in VARYING:
-        table = getattr(scene, name)
-        constant = {key: value_of(held) for key, held in vars(table).items() if isinstance(held, PiecewiseLinear)}
-        scene = replace(scene, **{name: replace(table, **constant)})
-    for name in RING_NAMES:
-        ring = getattr(scene, name)
-        if ring.load is not None:
-            held = {key: value_of(h) for key, h in vars(ring.load).items() if isinstance(h, PiecewiseLinear)}
-            scene = replace(scene, **{name: replace(ring, load=replace(ring.load, **held))})
-    return scene
+    def constant(table):
+        held = {key: value_of(h) for key, h in vars(table).items() if isinstance(h, PiecewiseLinear)}
+        loads = {"load": constant(table.load)} if getattr(table, "load", None) is not None else {}
+        return replace(table, **held, **loads)
+
+    return replace(scene, **{name: constant(getattr(scene, name)) for name in VARYING})
 
 
 # --- the other ring flexible --------------------------------------------------------------------------

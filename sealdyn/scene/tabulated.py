@@ -178,8 +178,10 @@ def _is_grid(axes, at) -> bool:
 
 
 def tabulated_errors(scene) -> list[tuple[str, str, str]]:
-    """What a scene with such a film cannot have: (dotted key, found, expected)."""
+    """What a scene with such a film cannot have: (dotted key, found, expected), empty with another."""
     film, table, bad = scene.film, scene.film.tabulated, []
+    if film.model != "tabulated":
+        return bad
     if table is None:
         return [("film.tabulated", "nothing", "a table with k_axial_axial and its like, or a file of them")]
     for names in (COLUMNS, LEAKAGE):
