@@ -392,14 +392,11 @@ def _break_off(as_json: bool, out: int):
 def _refuse(status: str, message: str, as_json: bool, errors=()):
     """Says why a verb does not do what was asked, and ends."""
     lines = [cut(" ".join(str(said).split()), LONGEST) for said in errors or [message]]
-    if not as_json:
-        say(*lines, error=True)
-        sys.exit(EXIT[status])
     told = {"status": status, "message": lines[0]}
     if errors:
         told["errors"] = [
             {"message": line, "key": error.key, "found": error.found, "expected": error.expected}
             for line, error in zip(lines, errors, strict=True)
         ]
-    print(json.dumps(told))
+    print(json.dumps(told)) if as_json else say(*lines, error=True)
     sys.exit(EXIT[status])

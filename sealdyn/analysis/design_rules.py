@@ -94,11 +94,11 @@ def _runout(seal: Seal, limit) -> Finding:
 
 def _misalignment(seal: Seal, limit) -> Finding:
     """Pass up to 0.0005 rad, the largest of both rings' tilts and of the runout of the data sheet."""
-    rotor, stator = seal.scene.rotor, seal.scene.stator
+    rotor, stator, diameter = seal.scene.rotor, seal.scene.stator, 2 * seal.scene.film.outer_radius
     key = "misalignment" if rotor.support else "runout"
     tilts = {f"rotor.{key}": largest_value(getattr(rotor, key)),
              "stator.misalignment": largest_value(stator.misalignment),
-             "application.face_runout": (seal.application.face_runout or 0.0) / seal.outer_diameter}  # fmt: skip
+             "application.face_runout": (seal.application.face_runout or 0.0) / diameter}  # fmt: skip
     worst = max(tilts, key=tilts.get)
     if tilts[worst] == 0.0:
         return missing_keys(*tilts)

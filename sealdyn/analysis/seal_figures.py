@@ -90,11 +90,6 @@ class Seal:
     model: Model
 
     @property
-    def outer_diameter(self) -> float:
-        """Outer diameter (m) of the face."""
-        return 2 * self.scene.film.outer_radius
-
-    @property
     def mean_diameter(self) -> float:
         """Mean diameter (m) of the face."""
         return self.scene.film.outer_radius + self.scene.film.inner_radius
