@@ -1,5 +1,5 @@
 """HDF5 files that a stranger can read: run.py and run_writer.py for trajectories, study.py for the answers of studies,
-as xarray datasets in dataset.py; files.py for what all files have."""
+as columns in tables.py; files.py for what all files have."""
 
 from .files import READING_ERRORS, ArchiveError, file_stem, is_full, link_target, only_writer, partial_path
 from .run import FIELD_TIME, Fields, Series, column, field, last_state, read_info
