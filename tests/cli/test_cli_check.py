@@ -4,7 +4,6 @@ import json
 import subprocess
 import sys
 import tomllib
-from pathlib import Path
 
 import pytest
 from command import SCENARIOS, sealdyn
@@ -83,7 +82,7 @@ def test_check_warns_of_units_and_a_refusal_names_them(tmp_path):
         assert done.code == 2 and "film.inner_pressure without a unit is read as 16 Pa" in done.err
 
 
-SEAL = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
+SEAL = SCENARIOS / "fms_reference.toml"
 COMMAND = [sys.executable, "-m", "sealdyn.cli"]
 
 

@@ -5,16 +5,15 @@ import fcntl
 import os
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
-from command import sealdyn
+from command import SCENARIOS, sealdyn
 
 from sealdyn.archive import ArchiveError, only_writer
 from sealdyn.scenario.reader import read_scenario
 from sealdyn.simulation.simulate import simulate
 
-SEAL = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
+SEAL = SCENARIOS / "fms_reference.toml"
 SHORT = ("run.turns=1", "run.samples_per_turn=16")
 HOLD = "import h5py, sys, time\nwith h5py.File(sys.argv[1], 'r+'):\n    print('held', flush=True)\n    time.sleep(600)"
 WITHOUT = "HDF5_USE_FILE_LOCKING"

@@ -5,10 +5,9 @@ import signal
 import subprocess
 import sys
 import time
-from pathlib import Path
 
 import pytest
-from command import sealdyn
+from command import SCENARIOS, sealdyn
 from killed import COMMAND, kill_midway
 
 from sealdyn.archive import ArchiveError, only_writer, read_info
@@ -16,7 +15,7 @@ from sealdyn.scenario.reader import read_scenario
 from sealdyn.simulation.simulate import simulate
 from sealdyn.studies._runner import run_study
 
-SEAL = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
+SEAL = SCENARIOS / "fms_reference.toml"
 RUN = [
     sys.executable, "-m", "sealdyn.cli", "run", str(SEAL), "--no-plot", "--set", "run.turns=200000", "--set",
     "run.samples_per_turn=8", "--out",

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import h5py
 import pytest
-from command import sealdyn
+from command import SCENARIOS, sealdyn
 
 from sealdyn.archive import file_stem
 from sealdyn.archive.files import seal
@@ -14,7 +14,7 @@ from sealdyn.scenario.reader import read_scenario
 from sealdyn.simulation.simulate import simulate
 
 SHORT = ["run.turns=1", "run.samples_per_turn=16"]
-SEAL = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
+SEAL = SCENARIOS / "fms_reference.toml"
 
 
 def plain(tmp_path, motion=""):

@@ -2,10 +2,10 @@
 to a gear mesh: displacement of the housing and motion of the film."""
 
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
+from command import SCENARIOS
 from scenes import CLEARANCE, R_I, R_O, SUPPORT, film, fmr, ring, run
 from scipy.integrate import solve_ivp
 
@@ -124,7 +124,7 @@ def test_lag_of_a_slow_sweep_is_that_of_its_rate():
     assert late[-1] > 5 * off[-1]
 
 
-SCENARIO = Path(__file__).parents[2] / "scenarios" / "gear_mesh.toml"
+SCENARIO = SCENARIOS / "gear_mesh.toml"
 
 
 @pytest.mark.core

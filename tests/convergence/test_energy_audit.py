@@ -1,9 +1,8 @@
 """The energy audit sees what it must: an equation that does not do what its works say."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from command import SCENARIOS
 from scenes import INERTIA, SPEED, SUPPORT, fmr, fms, fmsr, prepared, run
 
 from sealdyn.archive import read_info
@@ -16,7 +15,6 @@ from sealdyn.solvers.contract import Recorder
 from sealdyn.solvers.integrate import solve
 from sealdyn.solvers.run_error import EnergyAudit
 
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 K_S, D_S = SUPPORT.tilt()
 
 

@@ -6,16 +6,16 @@ Nothing forgives an error here: what a step adds, the next turns keep.
 """
 
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
+from command import SCENARIOS
 from scenes import INERTIA, SPEED, SUPPORT, TILT_SCALE, free_ring, run
 
 from sealdyn import read_scenario
 from sealdyn.simulation.simulate import prepare_run
 
-SCENARIO = Path(__file__).parents[2] / "scenarios" / "free_precession.toml"
+SCENARIO = SCENARIOS / "free_precession.toml"
 K_S = SUPPORT.axial_stiffness * SUPPORT.radius**2 / 2
 J = 2 * INERTIA
 TURNS = 60

@@ -1,15 +1,12 @@
 """A loose accuracy costs no more than a sharp one: steps that fail again and again are no saving."""
 
-from pathlib import Path
-
 import pytest
+from command import SCENARIOS
 
 from sealdyn import read_scenario
 from sealdyn.simulation.selection import prepare_run
 from sealdyn.solvers.contract import Recorder
 from sealdyn.solvers.integrate import solve
-
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 
 
 @pytest.mark.core

@@ -6,11 +6,11 @@ Every quantity of a run as `sealdyn run` does it, against two other references t
 
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 from benchmark.honesty import automatic, numbers
+from command import SCENARIOS
 from families import Drawn, gas, gas_reynolds
 from judge import by_steps, contact_errors, instants, truth, truth_in_own_words
 from scenes import film, fms, prepared
@@ -27,7 +27,6 @@ from sealdyn.scene.scene import Scene, with_values
 from sealdyn.simulation.selection import choose_method
 from sealdyn.simulation.verification_run import ErrorScales
 
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 TURN = 2 * math.pi / 1000.0
 
 

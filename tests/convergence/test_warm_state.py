@@ -3,7 +3,6 @@
 import math
 from dataclasses import replace
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -28,7 +27,6 @@ from sealdyn import Scenario
 from sealdyn.dynamics.interface import Interface
 from sealdyn.dynamics.warm_state import NoWarmState, at_work, warming
 
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 # A liquid that never thins, and whose leakage carries no heat.
 DEAD = {"density": 1e-3, "specific_heat": 1.0, "viscosity": [["1 degC", 8e-4], ["900 degC", 8e-4]]}
 RPM = math.pi / 30.0

@@ -1,9 +1,8 @@
 """Runs that switch or step without getting anywhere: what can be mended is, and the others end and say so."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from command import SCENARIOS
 
 from sealdyn.archive import read_info
 from sealdyn.scenario.reader import read_scenario
@@ -11,7 +10,7 @@ from sealdyn.simulation.simulate import simulate
 from sealdyn.solvers.contract import SolverFailure
 from sealdyn.solvers.integrate import CHANGES, METHODS, STEPS, Advance
 
-SQUEEZE = Path(__file__).parents[2] / "scenarios" / "squeeze.toml"
+SQUEEZE = SCENARIOS / "squeeze.toml"
 
 
 @pytest.mark.parametrize("friction", [0.1187, 15.0])

@@ -1,15 +1,13 @@
 """What the floor of the pressure costs beside cavities that keep their liquid, as `check` says it."""
 
-from pathlib import Path
-
 import pytest
+from command import SCENARIOS
 
 from sealdyn import read_scenario
 from sealdyn.simulation import film_error as module
 from sealdyn.simulation.film_error import reynolds_comparison
 from sealdyn.simulation.simulate import prepare_run, simulate
 
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 # A film of 1 bar that a runout of 0.25 mrad tears.
 LOW = ["film.cavitation_pressure=0", "film.outer_pressure=0.2 bar", "film.coning=0", "rotor.runout=0.2 mrad"]
 

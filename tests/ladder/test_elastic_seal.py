@@ -2,10 +2,10 @@
 
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
+from command import SCENARIOS
 from continued import differences, often, stopped
 from scenes import SPEED, SUPPORT, fmr, fms, ring, run
 
@@ -20,7 +20,7 @@ from sealdyn.scene.scene import SceneError
 from sealdyn.simulation.simulate import simulate
 from sealdyn.studies._runner import run_study
 
-SCENARIO = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
+SCENARIO = SCENARIOS / "fms_reference.toml"
 TURN = 2 * math.pi / SPEED
 ONE = SecondarySeal(radius=0.04, friction_force=4.0, stiffness=1e6)
 # Two more in parallel, one of them pins at a radius of their own.

@@ -1,9 +1,8 @@
 """Axial stiffness of gas dams at cruise: where parallel and divergent ones are statically unstable."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from command import SCENARIOS
 from scipy.optimize import brentq
 
 from sealdyn.closed_form.zuk_1972 import CRUISE, MIL
@@ -47,7 +46,7 @@ def test_a_convergent_dam_is_stable():
 
 def test_a_study_names_the_unstable_one():
     """At a parallel film of 0.3 mil, and the same load at 0.9 mil once more, where it is stable."""
-    scenario = read_scenario(Path(__file__).parents[2] / "scenarios" / "gas_dam_reference.toml")
+    scenario = read_scenario(SCENARIOS / "gas_dam_reference.toml")
     parallel = with_values(scenario, {"film.coning": 0.0, "film.clearance": "0.3 mil"})
     answer = equilibrium.run(parallel, equilibrium.Settings(), None)
     thin, thick = answer["roots"]

@@ -1,16 +1,15 @@
 """Hang-up: the spring against secondary-seal friction and inertia, predicted by the check and seen in the run."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from command import SCENARIOS
 
 from sealdyn.analysis.seal_figures import followability
 from sealdyn.archive import column
 from sealdyn.scenario.reader import read_scenario
 from sealdyn.simulation.simulate import prepare_run, simulate
 
-SCENARIO = Path(__file__).parents[2] / "scenarios" / "hang_up.toml"
+SCENARIO = SCENARIOS / "hang_up.toml"
 AMPLITUDE, MASS, SPEED, STIFFNESS, FRICTION = 20e-6, 1.0, 1000.0, 2e5, 15.0
 
 

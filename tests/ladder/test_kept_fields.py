@@ -2,11 +2,11 @@
 and without unknowns of their own, and a run that is stopped and continued keeps those of an unbroken one."""
 
 from functools import partial
-from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
+from command import SCENARIOS
 from radial_cells import film_of
 from scipy.integrate import simpson
 
@@ -17,7 +17,6 @@ from sealdyn.scenario.reader import read_scenario
 from sealdyn.simulation import selection
 from sealdyn.simulation.simulate import simulate
 
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 PROFILE = ["film.coning=0", "film.profile={radius=['32 mm', '36 mm', '40 mm'], depth=['0 um', '9 um', '25 um']}"]
 # Scenario, what is changed, and how far the sums on the grid may be off: further where the floor has kinks, or where a
 # thin film lets the pressure fall within a few radii.

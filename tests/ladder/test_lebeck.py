@@ -2,10 +2,10 @@
 
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
+from command import SCENARIOS
 from scipy.linalg import eig
 
 from sealdyn.analysis.sources import lebeck_1979, lebeck_1979_plateaus
@@ -32,7 +32,6 @@ from sealdyn.solvers.integrate import solve
 from sealdyn.solvers.methods import METHODS
 from sealdyn.studies import equilibrium
 
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 COARSE = ["film.reynolds.cells_r=6", "film.reynolds.cells_theta=108"]
 
 

@@ -2,10 +2,10 @@
 
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
+from command import SCENARIOS
 from scipy.optimize import brentq
 from test_ludwig_released import integrals, ready_scene
 
@@ -22,7 +22,7 @@ from sealdyn.studies.sealing_number import released as free
 RING = quasi_static.Ring(viscosity=2e-3, shaft_speed=1500.0, face_width=0.5e-3)
 TILT = 2.5e-3
 ARM = RING.mean_radius * RING.spring_force
-SCENARIO = Path(__file__).parents[2] / "scenarios" / "ludwig_allen.toml"
+SCENARIO = SCENARIOS / "ludwig_allen.toml"
 
 
 def nodding(force_ratio, share):

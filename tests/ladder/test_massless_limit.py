@@ -1,10 +1,10 @@
 """A ring that grows lighter tends to the massless ring: an ODE to its first-order limit."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
+from command import SCENARIOS
 from scenes import INERTIA, TILT_SCALE, film, fmr, fms, ring, run
 from scipy.integrate import solve_ivp
 
@@ -16,7 +16,6 @@ from sealdyn.simulation.simulate import prepare_run, simulate
 from sealdyn.solvers.contract import Recorder
 from sealdyn.solvers.integrate import solve
 
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 TURNS, PER_TURN = 2, 32
 
 

@@ -1,9 +1,8 @@
 """The study of film pressure on a gas dam: what the field sums up to (Zuk's rows: test_zuk_by_the_program.py)."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from command import SCENARIOS
 
 from sealdyn import read_scenario
 from sealdyn.closed_form.zuk_1972 import CRUISE
@@ -11,7 +10,7 @@ from sealdyn.scenario.errors import ScenarioError
 from sealdyn.studies import pressure
 from sealdyn.studies.pressure import Settings
 
-REFERENCE = Path(__file__).parents[2] / "scenarios" / "gas_dam_reference.toml"
+REFERENCE = SCENARIOS / "gas_dam_reference.toml"
 
 
 def answer(at="", *overrides):

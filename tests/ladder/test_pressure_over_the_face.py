@@ -1,10 +1,9 @@
 """The pressure that the study shows sums up to the film's own force and moments, film by film, and converges to it with
 the grid; aligned coned faces have the closed form."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from command import SCENARIOS
 from oracles import opening_force
 from radial_cells import film_of
 from scipy.integrate import quad
@@ -15,7 +14,6 @@ from sealdyn.scenario.reader import with_values
 from sealdyn.studies import pressure
 from sealdyn.studies.pressure import Settings, sums
 
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 R_I, R_O, CLEARANCE, CONING, DROP = 0.032, 0.040, 1e-5, 3.125e-3, 5e5
 AREA = np.pi * (R_O**2 - R_I**2)
 TILTED = "tilt = 0.15 mrad"

@@ -2,10 +2,10 @@
 
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
+from command import SCENARIOS
 from scipy.integrate import solve_ivp
 
 from sealdyn.analysis import other_rules
@@ -28,7 +28,7 @@ from sealdyn.solvers.run_error import EnergyAudit
 
 R, E, W = 0.025, 1e-4, 300.0
 ACCURACY = 1e-7
-SEGMENTS = Path(__file__).parents[2] / "scenarios" / "radial" / "circumferential_reference.toml"
+SEGMENTS = SCENARIOS / "radial" / "circumferential_reference.toml"
 
 
 def lip(preload=10.0, speed=W, e=E, eta=0.0, offset=0.0, sectors=12, stiffness=5e4, mass=0.03, **more):

@@ -5,10 +5,10 @@ coefficients and integrated by SciPy; its eigenvalues are the roots of a quadrat
 """
 
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
+from command import SCENARIOS
 from oracles import green_film
 from scipy.integrate import quad, solve_ivp
 
@@ -20,7 +20,6 @@ from sealdyn.scenario.reader import read_scenario
 from sealdyn.studies.runup.ramp_run import RampCycle, run_cycle
 from sealdyn.studies.runup.speed_ramp import measured_growth, predicted_growth
 
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 SCALE, INERTIA = 1e-5 / 0.04, 8e-4
 SUPPORT_K, SUPPORT_D = 400.0, 0.24
 RATES = (3000.0, 6000.0, 20000.0)

@@ -1,14 +1,13 @@
 """The study of film pressure gives Zuk's table: leakage, force, centre of pressure and exit Mach number of his seal."""
 
-from pathlib import Path
-
 import pytest
+from command import SCENARIOS
 
 from sealdyn.closed_form import zuk_1972 as zuk
 from sealdyn.scenario.reader import read_scenario, with_values
 from sealdyn.studies import pressure
 
-REFERENCE = Path(__file__).parents[2] / "scenarios" / "gas_dam_reference.toml"
+REFERENCE = SCENARIOS / "gas_dam_reference.toml"
 WIDTH = zuk.CRUISE.outer_radius - zuk.CRUISE.inner_radius
 
 

@@ -1,10 +1,9 @@
 """What faces that touch at rest allow, and the onset of films that store: against a static balance around the circle,
 and ramps."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from command import SCENARIOS
 from own_wavy_wear import touching
 from scipy.optimize import brentq
 
@@ -12,7 +11,6 @@ from sealdyn import read_scenario
 from sealdyn.studies import contact_onset
 from sealdyn.studies.contact_onset import Settings, allowed, ramped
 
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 # A ring that does not follow: the faces are as far out of square as the shaft.
 STUBBORN = ["stator.support={axial_stiffness=2e4, axial_damping=30, tilt_stiffness=1e9}", "run.accuracy=1e-5"]
 INNER, OUTER, HALF, STRENGTH, CONING = 0.032, 0.040, 3e-7, 100e6, 60e-6

@@ -1,16 +1,15 @@
 """Studies asked for in Python: numbers with dimensions and units, figures, and nothing left behind."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from command import SCENARIOS
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import sealdyn
 from sealdyn.archive import answer_as_dataset
 
-SCENARIO = sealdyn.read_scenario(Path(__file__).parents[2] / "scenarios" / "fms_reference.toml", ["run.turns=4"])
+SCENARIO = sealdyn.read_scenario(SCENARIOS / "fms_reference.toml", ["run.turns=4"])
 
 
 def test_a_study_leaves_nothing_without_an_archive(tmp_path, monkeypatch):

@@ -1,9 +1,8 @@
 """Campbell diagram: modes followed through a constructed crossing and a veering, against roots written out here."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from command import SCENARIOS
 from in_process import InProcess
 from oracles import green_film, tilt_roots
 
@@ -11,8 +10,6 @@ from sealdyn import read_scenario
 from sealdyn.dynamics.model import Model
 from sealdyn.studies import campbell
 from sealdyn.studies.campbell import Settings, follow
-
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 
 
 def whole(name, overrides=(), **settings):

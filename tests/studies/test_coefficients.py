@@ -1,10 +1,10 @@
 """Coefficients study: against differences of forces from a solver of Reynolds' equation that shares no code."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
+from command import SCENARIOS
 from drawn import text_trouble
 from oracles import opening_force, radial_wrench
 from scipy.optimize import brentq
@@ -20,7 +20,6 @@ from sealdyn.scene.scene import frozen_at_start
 from sealdyn.studies import coefficients
 from sealdyn.studies.coefficients import Settings
 
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 FACE = (0.032, 0.040, 10e-6, 3.125e-3, False, False)
 
 

@@ -1,9 +1,8 @@
 """Contact onset of the reference seals: formula, continuation, and plain runs that touch just above, not just below."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from command import SCENARIOS
 from oracles import contact_tilt
 from scenes import started
 
@@ -26,7 +25,6 @@ from sealdyn.studies import contact_onset
 from sealdyn.studies._runner import run_study
 from sealdyn.studies.contact_onset import Settings, onset
 
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 POINT = {"margin": 1e-3, "tolerance": 1e-5, "most": 1e3, "set": {}, "floor": False}
 CASES = {
     "fms": ("fms_reference", "rotor.runout", ["stator.misalignment=0"]),

@@ -3,9 +3,9 @@ it."""
 
 import math
 from functools import partial
-from pathlib import Path
 
 import pytest
+from command import SCENARIOS
 from in_process import InProcess
 from oracles import tilt_roots
 from scenes import BARRIER, INERTIA, SUPPORT, fmr, fms
@@ -26,7 +26,7 @@ LINEAR = ['film.model="linear"']
 
 
 def study(scenario, tmp_path, overrides=(), **flags):
-    path = Path(__file__).parents[2] / "scenarios" / f"{scenario}.toml"
+    path = SCENARIOS / f"{scenario}.toml"
     read = parse_scenario(path.read_text(), scenario, [*overrides])
     return run_study("critical-speed", read, tmp_path / "out.h5", flags=flags, workers=1)
 
@@ -116,7 +116,7 @@ def test_rotor_whirls_bounded_above_its_threshold(tmp_path):
 
 def test_runs_that_would_not_part_within_the_turns_are_not_bisected():
     """A seal whose whirl parts with a hundredth of Green's rate: twenty runs of thousands of turns decide nothing."""
-    path = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
+    path = SCENARIOS / "fms_reference.toml"
     scene = parse_scenario(path.read_text(), "fms").scene
     row = tipping_disturbance(scene, 5560.0, 0.1)
     assert row["disturbance"] is None and row["whirl"] is None
@@ -158,7 +158,7 @@ COUNTER = ["stator.speed=-5000"]
 
 
 def test_growth_is_measured_over_turns_of_the_whirl_where_it_is_faster():
-    path = Path(__file__).parents[2] / "scenarios" / "fmsr_both_flexible.toml"
+    path = SCENARIOS / "fmsr_both_flexible.toml"
     scene = parse_scenario(path.read_text(), "fmsr", COUNTER).scene
     run = tilt_in_time(scene, 72.0, 20, "adams", 1e-7, 1e-7)[3]
     whirl = max(run.model.linear_scene().modes(), key=lambda m: m.value.real).value.imag
@@ -211,7 +211,7 @@ def test_speeds_of_no_seal_are_not_run(tmp_path, monkeypatch):
 def test_a_threshold_too_fast_to_run_has_its_growth_by_eigenvalues():
     # A fortieth of the inertia.
     overrides = ["stator.transverse_inertia=2e-5", "stator.polar_inertia=4e-5"]
-    text = (Path(__file__).parents[2] / "scenarios" / "fms_reference.toml").read_text()
+    text = (SCENARIOS / "fms_reference.toml").read_text()
     scenario = parse_scenario(text, "fast", overrides)
     answer = critical_speed.run(scenario, critical_speed.Settings(), InProcess())
     growth, threshold = answer["growth"], answer["eigenvalue"]

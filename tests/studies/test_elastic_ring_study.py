@@ -1,16 +1,15 @@
 """Elastic ring: what the study cannot be asked, runs with the waves that are left; its three wavinesses are held in
 test_every_study_is_data.py."""
 
-from pathlib import Path
-
 import pytest
+from command import SCENARIOS
 
 from sealdyn import read_scenario, run_study, simulate
 from sealdyn.archive import read_study
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scene.scene import SceneError
 
-FILE = Path(__file__).parents[2] / "scenarios" / "lebeck_elastic.toml"
+FILE = SCENARIOS / "lebeck_elastic.toml"
 COARSE = ["film.reynolds.cells_r=6", "film.reynolds.cells_theta=108"]
 
 

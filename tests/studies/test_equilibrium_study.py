@@ -1,9 +1,8 @@
 """Equilibrium study: forces integrated here, several clearances, none at all."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from command import REFERENCE
 from oracles import opening_force
 from scipy.optimize import brentq
 
@@ -14,8 +13,6 @@ from sealdyn.scenario.reader import parse_scenario, with_values
 from sealdyn.studies import equilibrium
 from sealdyn.studies._runner import run_study
 from sealdyn.studies.equilibrium import Settings
-
-REFERENCE = Path(__file__).parents[2] / "scenarios" / "fmr_reference.toml"
 
 
 def answer(scenario, **settings):

@@ -1,10 +1,10 @@
 """Every exhibit fails where it says and survives where it says; the gallery's page and the sampling warning."""
 
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
+from command import SCENARIOS
 from drawn import text_trouble
 
 import sealdyn
@@ -14,7 +14,7 @@ from sealdyn.scenario.errors import ScenarioError
 from sealdyn.studies._runner import run_study
 from sealdyn.studies.failures import chosen_for, exhibit_names, place_of, shown
 
-SCENARIO = Path(__file__).parents[2] / "scenarios" / "fmr_reference.toml"
+SCENARIO = SCENARIOS / "fmr_reference.toml"
 KEYS = {"item", "title", "failing", "failing_error", "survivor", "survivor_error", "unit", "default"}
 
 # Title: least that the failing method must be off (None: it must give no answer), most that the survivor may be.

@@ -1,9 +1,8 @@
 """Studies of a film that stores (radial_cells.py): right at the motion's frequency, or refused with one sentence."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from command import SCENARIOS
 from in_process import InProcess
 from radial_cells import film_of
 
@@ -21,7 +20,6 @@ from sealdyn.studies.runup.plan import planned
 from sealdyn.studies.runup.ramp_run import overshoot, quasi_static
 from sealdyn.studies.transmissibility.arrangements import seals_of
 
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 STORING = 1e-6
 
 

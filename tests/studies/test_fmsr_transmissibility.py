@@ -1,9 +1,8 @@
 """Both rings flexible in the study `transmissibility`: Green's conjecture, where which arrangement is best, in time."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from command import SCENARIOS
 from in_process import InProcess
 from oracles import tilt_roots, tilts_in_turning_axes
 
@@ -13,7 +12,6 @@ from sealdyn.scene.scene import arrangement, counterpart, with_both_flexible_rin
 from sealdyn.studies import transmissibility
 from sealdyn.studies.transmissibility import Settings
 
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 K_F, D_F = 5790.583579096709, 4.082073628553869
 RING = (8e-4, 16e-4, 400.0, 0.24)
 

@@ -1,12 +1,11 @@
 """The study followability: its curves are the closed form's, its runs confirm them, its figure draws."""
 
-from pathlib import Path
-
 import pytest
+from command import SCENARIOS
 
 import sealdyn
 
-RADIAL = Path(__file__).parents[2] / "scenarios" / "radial"
+RADIAL = SCENARIOS / "radial"
 
 
 @pytest.mark.core

@@ -1,10 +1,10 @@
 """Load support over a key: plane faces in closed form, what Lebeck's report says of wavy ones, the archive."""
 
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
+from command import SCENARIOS
 
 from sealdyn import open_archive, read_scenario
 from sealdyn.archive import read_study
@@ -13,7 +13,6 @@ from sealdyn.scenario.reader import parse_scenario
 from sealdyn.studies import load_support
 from sealdyn.studies._runner import run_study
 
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 COARSE = ["film.reynolds.cells_r=6", "film.reynolds.cells_theta=72"]
 
 

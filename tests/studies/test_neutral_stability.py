@@ -1,9 +1,9 @@
 """Numerical damping at the threshold against roots written out here; drift of free precession."""
 
 import json
-from pathlib import Path
 
 import pytest
+from command import SCENARIOS
 from oracles import tilt_roots
 from scenes import INERTIA, SUPPORT, fmr
 
@@ -15,7 +15,6 @@ from sealdyn.studies import neutral_stability
 from sealdyn.studies._runner import run_study
 from sealdyn.studies.failures.cases import integration as exhibit
 
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 THREE = ["rotor.polar_inertia=2.6667e-4"]
 # Green's film coefficients of his reference seal, N m/rad and N m s/rad (Green 1989, Fig. 8).
 K_F, D_F = 5791.0, 4.082

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from command import SCENARIOS
 
 import sealdyn
 from sealdyn.numerics import parallel
@@ -18,7 +19,7 @@ from sealdyn.simulation import batch
 from sealdyn.studies import sweep
 from sealdyn.studies._runner import StudyContext, run_study
 
-PATH = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
+PATH = SCENARIOS / "fms_reference.toml"
 SHORT = ["run.turns=2", 'run.start="steady"', "film.model=linear"]
 CALLS = []
 

@@ -2,10 +2,10 @@
 
 import json
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
+from command import SCENARIOS
 from drawn import drawn, has_points, panel, text_trouble
 
 import sealdyn
@@ -20,7 +20,6 @@ from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scene.scene import with_values
 from sealdyn.studies._runner import run_study
 
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 QUICK = {"ramp": 10, "drop": 6, "keep": 16, "exponent_turns": 16, "judge_turns": 0}
 
 

@@ -2,10 +2,10 @@
 
 import json
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
+from command import SCENARIOS
 from drawn import curve, drawn, has_points, panel, text_trouble
 
 from sealdyn.archive import read_study
@@ -18,7 +18,6 @@ from sealdyn.studies import runup
 from sealdyn.studies._runner import run_study
 from sealdyn.studies.runup.speed_ramp import touch_tilt
 
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 GREEN = 5890.6
 NARROW = {"begin": 5600, "end": 6185, "rates": "8000, 20000, 60000"}
 

@@ -1,9 +1,8 @@
 """Coning and inertia ratio in the transmissibility study: the stiffest film, the rotor's ratio I/J, axial groups."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from command import SCENARIOS
 from in_process import InProcess
 from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
@@ -14,7 +13,6 @@ from sealdyn.closed_form.green_1989 import GREEN_1989_ROUNDED
 from sealdyn.studies import transmissibility
 from sealdyn.studies.transmissibility import Settings
 
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 # Green's seal: N m/rad, N m s/rad, kg m^2, rad/s.
 K, D, K_S, D_S, INERTIA, SPEED = 5790.58, 4.082, 400.0, 0.24, 8e-4, 1000.0
 

@@ -2,9 +2,9 @@
 
 import json
 import math
-from pathlib import Path
 
 import pytest
+from command import SCENARIOS
 
 from sealdyn.archive import read_study
 from sealdyn.report import panels
@@ -14,7 +14,7 @@ from sealdyn.scene.scene import SceneError
 from sealdyn.studies._runner import run_study
 from sealdyn.studies.sealing_number import released
 
-PATH = Path(__file__).parents[2] / "scenarios" / "ludwig_allen.toml"
+PATH = SCENARIOS / "ludwig_allen.toml"
 RATIOS = (1.2, 1.45, 1.6, 2.5)
 
 

@@ -1,9 +1,8 @@
 """Stability map: against eigenvalues of the rebuilt scene, Green's thresholds, and the time domain."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from command import SCENARIOS
 from in_process import InProcess
 
 from sealdyn import read_scenario
@@ -15,7 +14,6 @@ from sealdyn.studies import stability
 from sealdyn.studies.stability import Settings
 from sealdyn.studies.stability.grid import Grid, growth_rates
 
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 FMR, FMS, FMSR = (SCENARIOS / f"{n}.toml" for n in ("fmr_reference", "fms_reference", "fmsr_both_flexible"))
 
 

@@ -1,9 +1,8 @@
 """The steady-state study through its front door, and against roots and formulas written out here."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from command import SCENARIOS
 from in_process import InProcess
 from oracles import tilt_roots
 from scenes import started
@@ -19,8 +18,6 @@ from sealdyn.solvers.contract import Recorder
 from sealdyn.solvers.integrate import solve
 from sealdyn.studies import steady_state
 from sealdyn.studies._runner import run_study
-
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 
 
 def test_answer_archive_and_figure(tmp_path):

@@ -2,10 +2,10 @@
 
 import itertools
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
+from command import SCENARIOS
 from command import sealdyn as program
 from in_process import InProcess
 from killed import COMMAND, kill_midway, mark_first
@@ -20,7 +20,7 @@ from sealdyn.simulation.simulate import simulate, simulate_in_memory
 from sealdyn.studies import sweep as study
 from sealdyn.studies._runner import run_study
 
-PATH = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
+PATH = SCENARIOS / "fms_reference.toml"
 SHORT = ["run.turns=6", 'run.start="steady"']
 
 
@@ -259,7 +259,7 @@ def test_a_sweep_of_which_no_run_is_possible_has_failed(count, status):
 def test_changes_as_small_as_the_accuracy_are_not_shown_as_an_answer(tmp_path):
     """A ring that follows to a thousandth of a microradian: a coarse accuracy draws a zigzag of its own errors."""
     vary, rough = "closing.spring_force=100:104 N:3", ["run.turns=1", "run.accuracy=1e-2"]
-    path = Path(__file__).parents[2] / "scenarios" / "pump_seal.toml"
+    path = SCENARIOS / "pump_seal.toml"
     scenario = parse_scenario(path.read_text(), "pump", rough)
     answer = study.run(scenario, study.Settings(vary=vary, outputs=["h_min.value", "friction.power"]), InProcess())
     # Its trend would be that of the errors.

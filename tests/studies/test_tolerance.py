@@ -2,11 +2,10 @@
 
 import json
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
-from command import sealdyn
+from command import SCENARIOS, sealdyn
 from drawn import drawn, panel, text_trouble
 from killed import COMMAND, kill_midway, mark_first
 from scipy.stats import kstest, multivariate_normal, norm, sobol_indices, truncnorm, uniform
@@ -29,7 +28,7 @@ from sealdyn.studies.tolerance.scatter import (
     sobol_intervals,
 )
 
-PATH = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
+PATH = SCENARIOS / "fms_reference.toml"
 LINEAR = ["run.turns=2", 'run.start="steady"', "film.model=linear", "stator.misalignment=0"]
 ANGLES = ("rotor.runout", "stator.misalignment", "rotor.runout_phase")
 

@@ -1,10 +1,10 @@
 """Transmissibility study: Green's Table 1, crossovers from formulas written here, the three roads."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
+from command import SCENARIOS
 from in_process import InProcess
 from scenes import BARRIER, started
 from scipy.optimize import brentq
@@ -16,8 +16,6 @@ from sealdyn.scenario.reader import parse_scenario
 from sealdyn.scene.scene import counterpart, frozen_at_start, with_single_flexible_ring
 from sealdyn.studies import transmissibility
 from sealdyn.studies.transmissibility import Settings
-
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 
 
 def answer(file="fmr_reference.toml", overrides=("film.model=linear",), **settings):

@@ -2,10 +2,10 @@
 
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
+from command import SCENARIOS
 from drawn import text_trouble
 from in_process import InProcess
 from oracles import opening_force
@@ -21,7 +21,6 @@ from sealdyn.studies import vibration as study
 from sealdyn.studies.vibration import Settings, shaken_seal
 from sealdyn.studies.vibration.shaken_seal import ShakenSeal
 
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 G = 9.80665
 # Green's ring and support; stiffness and damping of the springs against tilt.
 MASS, INERTIA, POLAR, K_Z, D_Z, K_S, D_S, SPEED = 1.0, 8e-4, 16e-4, 5e5, 300.0, 400.0, 0.24, 1000.0

@@ -2,10 +2,10 @@
 
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
+from command import SCENARIOS
 from scipy.optimize import minimize_scalar
 
 from sealdyn import read_scenario, run_study
@@ -15,7 +15,7 @@ from sealdyn.scene.rings import ElasticRing
 from sealdyn.scene.scene import SceneError
 from sealdyn.studies.wave_design import of_order
 
-FILE = Path(__file__).parents[2] / "scenarios" / "lebeck_driven.toml"
+FILE = SCENARIOS / "lebeck_driven.toml"
 COARSE = ["film.reynolds.cells_r=6", "film.reynolds.cells_theta=324"]
 RING = ElasticRing(bending_stiffness=50.0, radius=0.05, torsion_ratio=2.0, drive_pressure=5e6, drive_length=0.02)
 ORDER, WIDTH = 4, 0.7e-6

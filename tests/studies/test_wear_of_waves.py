@@ -1,10 +1,10 @@
 """Wavy faces that wear: life of a lapped wave against a march of its own, volume, travelling waves, what is refused."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
+from command import SCENARIOS
 from own_wavy_wear import WavyFaces, touching
 
 from sealdyn import read_scenario, run_study
@@ -13,7 +13,7 @@ from sealdyn.scene.scene import SceneError
 from sealdyn.studies.wear.rosenbrock import NoAverage
 from sealdyn.studies.wear.waves import BalancesOfWaves
 
-FILE = Path(__file__).parents[2] / "scenarios" / "lebeck_n3.toml"
+FILE = SCENARIOS / "lebeck_n3.toml"
 HALF, STRENGTH, SPEED, OUTER, COEFFICIENT = 0.50001e-6, 286.7e6, 188.0, 0.05, 1e-17
 WEARS = ["contact.stator_wear_coefficient=1e-17 1/Pa", "film.reynolds.cells_r=6", "film.reynolds.cells_theta=144"]
 

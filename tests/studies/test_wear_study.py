@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from command import SCENARIOS
 from drawn import text_trouble
 from killed import COMMAND, kill_midway
 from scenes import fms, ring
@@ -24,7 +25,6 @@ from sealdyn.studies._runner import run_study
 from sealdyn.studies.wear.averages import ShortRunAverages
 from sealdyn.studies.wear.rosenbrock import Control, HatBasis, NoAverage, WearState, advance, unevenness
 
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 R_I, R_O, SPEED, LOAD, ROUGH, PER = 0.032, 0.040, 300.0, 250.0, 1e-7, 1e-17
 AREA, HOUR = math.pi * (R_O**2 - R_I**2), 3600.0
 RADIUS = np.linspace(R_I, R_O, 17)

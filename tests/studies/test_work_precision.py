@@ -2,10 +2,10 @@
 
 import json
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
+from command import SCENARIOS
 from drawn import drawn, has_points, panel, text_trouble
 from scipy.integrate import solve_ivp
 
@@ -20,7 +20,6 @@ from sealdyn.studies import work_precision as study
 from sealdyn.studies._runner import run_study
 from sealdyn.studies.work_precision import film_ladder, mark_slow_runs, observation
 
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
 FEW = {"tolerances": 3, "loosest": 1e-3, "tightest": 1e-7, "repeats": 1, "samples": 40, "longest": 60}
 
 
