@@ -132,13 +132,6 @@ def test_all_four_coefficients_from_a_perturbed_strip(coning):
     assert force == pytest.approx(float(2e5 * area + 2 * mp.pi * mean_radius * strip(seal, films)), rel=1e-13)
 
 
-@pytest.mark.core
-def test_axial_stiffness_is_the_slope_of_the_opening_force():
-    face = {name: REFERENCE[name] for name in FACE} | {"inner_pressure": 1e5, "outer_pressure": 6e5}
-    up, down = (narrow_seal_opening_force(**face | {"clearance": c}) for c in (10.001e-6, 9.999e-6))
-    assert film_coefficients(**REFERENCE).axial_stiffness == pytest.approx((down - up) / 2e-9, rel=1e-7)
-
-
 def test_narrow_seal_is_the_limit_of_the_film_over_the_radius():
     # Errors fall with the face width, at the same film ratio.
     errors = []
