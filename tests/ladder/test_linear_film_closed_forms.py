@@ -13,44 +13,25 @@ FILM = film_coefficients(0.032, 0.04, 1e-5, 3.125e-3, 0.5e-3, 5e5)
 K_S, D_S = SUPPORT.tilt()
 
 
-def numbers(c):
-    return dict(
-        speed=SPEED, transverse_inertia=INERTIA, polar_inertia=INERTIA / c, support_stiffness=K_S,
-        support_damping=D_S, film_stiffness=FILM.tilt_stiffness, film_damping=FILM.tilt_damping,
+def closed(flexible, c, coefficients=FILM):
+    """Static and dynamic transmissibility."""
+    numbers = dict(
+        speed=SPEED, transverse_inertia=INERTIA, polar_inertia=INERTIA / c, support_stiffness=K_S, support_damping=D_S,
+        film_stiffness=coefficients.tilt_stiffness, film_damping=coefficients.tilt_damping,
     )  # fmt: skip
-
-
-def transmissibilities(flexible, c):
-    """Oracle: the ring's complex equation at frequency 0 and w, written out and solved here."""
-    w, j = SPEED, INERTIA / c if flexible == "rotor" else 0.0
-    k_f, d_f = FILM.tilt_stiffness, FILM.tilt_damping
-    spin = w if flexible == "rotor" else 0.0
-
-    def film(s):
-        return k_f + 1j * s * d_f - 0.5j * w * d_f
-
-    def own(s):
-        return -INERTIA * s * s + j * w * s + D_S * (1j * s - 1j * spin) + K_S
-
-    fixed, turning = 0.0, w
-    own_s, partner_s = (turning, fixed) if flexible == "rotor" else (fixed, turning)
-    to_own = K_S / (own(own_s) + film(own_s))
-    to_partner = 1 - film(partner_s) / (own(partner_s) + film(partner_s))
-    static, dynamic = (to_partner, to_own) if flexible == "rotor" else (to_own, to_partner)
-    return abs(static), abs(dynamic)
+    kind = {"rotor": "fmr", "stator": "fms"}[flexible]
+    return [getattr(closed_form, f"{kind}_{part}")(**numbers) for part in ("static", "dynamic")]
 
 
 @pytest.mark.parametrize("c", [0.5, 3.0])
 @pytest.mark.parametrize("flexible", ["rotor", "stator"])
 def test_extremes_of_the_relative_misalignment(flexible, c):
     """static, dynamic, maximum and minimum, each from its own run, to 1e-6 at accuracy 1e-8."""
+    static, dynamic = closed(flexible, c)
     if flexible == "rotor":
-        static, dynamic = closed_form.fmr_static(**numbers(c)), closed_form.fmr_dynamic(**numbers(c))
         scenes = [fmr("linear", c, own=0.0), fmr("linear", c, fixed=0.0), fmr("linear", c)]
     else:
-        static, dynamic = closed_form.fms_static(**numbers(c)), closed_form.fms_dynamic(**numbers(c))
         scenes = [fms("linear", c, runout=0.0), fms("linear", c, own=0.0), fms("linear", c)]
-    assert (static, dynamic) == pytest.approx(transmissibilities(flexible, c), rel=1e-12)
     runs = [run(scene, turns=12, accuracy=ACCURACY, per_turn=1) for scene in scenes]
     for which, expected in ((0, static), (1, dynamic)):
         for slot in (MOST, LEAST):
@@ -84,15 +65,7 @@ def test_small_tilt_is_the_closed_form(flexible, geometry):
     """|g| r_o / C = 1e-3: maximum and minimum relative misalignment to 1e-5, with coefficients from another code
     (covariances over the face) and with the run's own."""
     own = radial_film_coefficients(R_I, R_O, CLEARANCE, 3.125e-3, 0.5e-3, 5e5, geometry=geometry)
-    numbers = dict(
-        speed=SPEED, transverse_inertia=INERTIA, polar_inertia=2 * INERTIA, support_stiffness=K_S,
-        support_damping=D_S, film_stiffness=own.tilt_stiffness, film_damping=own.tilt_damping,
-    )  # fmt: skip
-    if flexible == "rotor":
-        static, dynamic = closed_form.fmr_static(**numbers), closed_form.fmr_dynamic(**numbers)
-    else:
-        static, dynamic = closed_form.fms_static(**numbers), closed_form.fms_dynamic(**numbers)
-    most, least = closed_form.superposed(static, dynamic)
+    most, least = closed_form.superposed(*closed(flexible, 0.5, own))
     forcing = 1e-3 * TILT_SCALE / most
     partner = {"fixed": forcing} if flexible == "rotor" else {"runout": forcing}
     build = fmr if flexible == "rotor" else fms

@@ -10,7 +10,6 @@ from scenes import INERTIA, SUPPORT, fmr, fms, run
 from sealdyn.closed_form import film_coefficients, fmr_critical_speed, fms_critical_speed
 from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.modes import verdict
-from sealdyn.dynamics.stability_thresholds import one_by_one, thresholds
 from sealdyn.scene.scene import Initial, RingStart
 from sealdyn.simulation import stability
 
@@ -37,12 +36,6 @@ def eigenvalues(kind, speed):
     return tilt_roots(speed, flexible, inertia=INERTIA, polar=INERTIA / 3, k_s=K_S, d_s=D_S, **film)
 
 
-@pytest.mark.core
-def test_critical_speeds_of_the_reference_seal():
-    assert CRITICAL["fms"] == pytest.approx(5.89e3, rel=1e-3)
-    assert CRITICAL["fmr"] == pytest.approx(8.684e3, rel=1e-3)
-
-
 @pytest.mark.parametrize("method", ["adams", "bdf", "ida", "dop853"])
 @pytest.mark.parametrize("share", [0.99, 1.01])
 @pytest.mark.parametrize("kind", ["fms", "fmr"])
@@ -64,14 +57,7 @@ def test_verdict_and_rate_either_side(kind, share, method):
     assert (rate > 0) == (share > 1)
 
 
-@pytest.mark.parametrize("kind", ["fms", "fmr"])
-def test_critical_speed_by_eigenvalues(kind):
-    model = Model(scene(kind, 1000.0))
-    found = thresholds(one_by_one(lambda w: model.linear_scene(speed=w)), 500.0, 2e4)[0]
-    # Growth within 1e-9 of the eigenvalue counts as none: so much the threshold may be off, over its slope.
-    assert found == pytest.approx(CRITICAL[kind], rel=1e-8)
-
-
+@pytest.mark.core
 @pytest.mark.parametrize("lighter", [1e-8, 1e-6, 1e-3, 1.0, 1e3])
 @pytest.mark.parametrize("speed", [1.0, 1000.0, 1e5])
 def test_critical_speed_is_found_however_overdamped_the_ring(lighter, speed):

@@ -29,7 +29,7 @@ def answer(row):
 def test_rows_of_the_table(row):
     found = answer(row)
     assert found["mass_flow"] == pytest.approx(row.leakage, rel=5e-3)
-    assert found["exit_mach"] == pytest.approx(row.exit_mach, abs=5e-4 + 5e-3 * row.exit_mach)
+    assert found["exit_mach"] == pytest.approx(row.exit_mach, rel=5e-3)
     # Forces of tilted rows are wrong in print (validation says why): those computed without the error.
     sharp = 1e-3 if row.tilt else 5e-3
     assert found["gauge_force"] == pytest.approx(row.corrected_force, rel=sharp)
