@@ -186,23 +186,6 @@ def test_hydrodynamic_lips_have_tables_of_their_own(tmp_path):
         assert row["lip_pressure"]["verdict"] == ends and row["lip_pressure"]["source"] == "table 3.3"
 
 
-def test_a_run_goes_on_where_it_was_broken_off(tmp_path):
-    scenario = read_scenario(SEGMENTS, ["run.turns=3", "shaft.eccentricity='0.3 mm'"])
-    whole = simulate(scenario, tmp_path / "whole.h5")
-    looks = iter(range(10_000))
-    part = simulate(scenario, tmp_path / "part.h5", stop=lambda: next(looks) > 12)
-    assert part.status == "interrupted"
-    rest = simulate(scenario, tmp_path / "part.h5", resume=True)
-    assert rest.status == "ok"
-    one, other = (open_archive(path).load() for path in (whole.archive, rest.archive))
-    for name in ("largest_gap", "load", "time"):
-        np.testing.assert_allclose(one[name], other[name], atol=1e-6 * float(abs(one[name]).max()))
-    assert whole.summary["contact"]["lift"] == rest.summary["contact"]["lift"]
-    assert whole.summary["settled"]["contact_share"] == pytest.approx(
-        rest.summary["settled"]["contact_share"], abs=1e-6
-    )
-
-
 def test_a_run_that_ends_before_anything_settles(tmp_path):
     """Its lines, its warnings and its figure say so; no number is none."""
     scenario, looks = read_scenario(SEGMENTS, ["run.turns=3", "shaft.eccentricity='0.3 mm'"]), iter(range(10_000))

@@ -124,20 +124,3 @@ def test_against_the_matrix_written_out():
     start = ready.model.scales[:n] * np.linspace(0.1, 0.3, n)
     assert motion.free(start, [at])[0] == pytest.approx(expm(motion.matrix * at) @ start, rel=1e-9, abs=1e-16)
     assert np.any(push[0] != push[1])
-
-
-def test_a_resumed_run_ends_in_the_same_place():
-    """Taken up in the middle of its steps, with the unknowns that it had there."""
-    ready = prepared(SCENES["fmsr"], 60 * TURN, 1e-9)
-    seen = []
-
-    class Sink(Recorder):
-        def state(self, segment, tau, y):
-            seen.append((segment.index, tau, np.array(y)))
-
-    outcome = solve(ready, "expm", 1e-9, Sink(TURN / 8))
-    middle = seen[0]
-    assert 0 < middle[1] < ready.duration
-    again = solve(ready, "expm", 1e-9, Recorder(TURN / 8), resume=middle)
-    n = ready.model.unknowns.n_mechanical
-    assert np.max(np.abs(again.y[:n] - outcome.y[:n]) / ready.model.scales[:n]) < 1e-12

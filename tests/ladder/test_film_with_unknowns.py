@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 import pytest
 from radial_cells import film_of
-from scenes import CLEARANCE, R_I, R_O, SPEED, Sink, film, fms, fmsr, prepared, ring, run, runup, started
+from scenes import CLEARANCE, R_I, R_O, SPEED, Sink, film, fms, fmsr, ring, run, runup, started
 from scipy.special import iv, kv
 
 from sealdyn.dynamics.condensation import FilmDerivatives
@@ -145,20 +145,6 @@ def test_pressures_follow_a_changing_speed_past_its_kinks():
                     for more in ({}, {"model_class": cellular(48)}))  # fmt: skip
     assert found.outcome.status == "ok" and found.outcome.segment == 2
     assert largest(found, exact) < 0.02
-
-
-def test_a_run_goes_on_from_where_it_was():
-    """The pressures of a film that stores are part of the state."""
-    ready = prepared(fms(), 0.18, 1e-6, model_class=cellular(4, 8, compressibility=1e-6))
-    whole, half, rest = (Sink(0.18, 1e-3) for _ in range(3))
-    assert solve(ready, "ida", 1e-6, whole).status == "ok"
-    states = []
-    half.state = lambda segment, tau, y: states.append((segment.index, tau, y))
-    solve(ready, "ida", 1e-6, half)
-    assert len(states) > 1
-    solve(ready, "ida", 1e-6, rest, resume=states[0])
-    q, again = np.concatenate(whole.q), np.concatenate(rest.q)
-    assert np.max(np.abs(q[-len(again) :] - again) / ready.model.scales[:3]) < 3e-6
 
 
 def test_a_run_by_differences_is_that_of_the_films_own_derivatives():

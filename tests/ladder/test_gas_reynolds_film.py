@@ -126,18 +126,6 @@ def test_rings_follow_the_linear_response_of_a_gas_that_stores():
     assert abs(np.mean(tilt * np.exp(-1j * h.frequency * t)) - expected) < 1e-4 * abs(expected)
 
 
-def test_a_run_goes_on_from_where_it_was():
-    ready = prepared(fms(film=gas_film((6, 12), **SOFT)), 0.18, 1e-6)
-    whole, half, rest = (Sink(0.18, 1e-3) for _ in range(3))
-    assert solve(ready, "ida", 1e-6, whole).status == "ok"
-    states = []
-    half.state = lambda segment, tau, y: states.append((segment.index, tau, y))
-    solve(ready, "ida", 1e-6, half)
-    solve(ready, "ida", 1e-6, rest, resume=states[0])
-    q, again = np.concatenate(whole.q), np.concatenate(rest.q)
-    assert np.max(np.abs(q[-len(again) :] - again) / ready.model.scales[:3]) < 3e-6
-
-
 def test_cells_converge_in_time():
     fine = run(fms(film=gas_film((24, 64), **SOFT)), 1.0, 1e-8, "ida")
     errors = []

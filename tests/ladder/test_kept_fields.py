@@ -1,5 +1,5 @@
 """Fields that runs keep: pressures summed over the face are the force and the moments in the archive, for films with
-and without unknowns of their own, and a run that is stopped and continued keeps those of an unbroken one."""
+and without unknowns of their own."""
 
 from functools import partial
 
@@ -121,23 +121,3 @@ def test_pressures_of_a_film_with_unknowns_are_kept_as_they_are(tmp_path, cells)
     size = np.max(at_fields(path, "film_force")) * r[-1]
     for name, turn in (("film_moment_x", np.sin(theta)), ("film_moment_y", -np.cos(theta))):
         assert np.sum(p * arm * turn, axis=(1, 2)) == pytest.approx(at_fields(path, name), abs=1e-9 * size)
-
-
-@pytest.mark.slow
-def test_a_film_with_unknowns_goes_on_from_its_archive(tmp_path, cells):
-    scenario = read_scenario(SCENARIOS / "fms_reference.toml", ["run.turns=12", "run.samples_per_turn=16"])
-    whole = simulate(scenario, tmp_path / "whole.h5")
-    first = simulate(scenario, tmp_path / "part.h5", stop=lambda: True)
-    assert first.status == "interrupted"
-    reached = column(first.archive, "time")[-1]
-    due = field(whole.archive, "field_time")
-    np.testing.assert_array_equal(field(first.archive, "field_time"), due[due <= reached])
-    assert 0 < np.sum(due <= reached) < 32
-    again = simulate(scenario, tmp_path / "part.h5", resume=True)
-    assert again.status == "ok"
-    np.testing.assert_array_equal(field(again.archive, "field_time"), due)
-    for name, scale in (("h_min", 1e-5), ("stator_z", 1e-5), ("film_force", 700.0)):
-        assert np.max(np.abs(column(again.archive, name) - column(whole.archive, name))) < 1e-5 * scale, name
-    apart = np.max(np.abs(field(again.archive, "pressure") - field(whole.archive, "pressure")))
-    assert apart < 1e-4 * 5e5
-    assert again.summary["energy_residual"] < 1e-4
