@@ -126,14 +126,6 @@ def test_every_command_that_a_rule_names_is_one(tmp_path):
         assert verb == "run" or study_module(rest[0].replace("-", "_"))
 
 
-def test_the_spring_that_hangs_up_is_found_before_the_run(tmp_path):
-    """What `check` says of the shipped scenario, its run shows (tests/ladder/test_hang_up.py)."""
-    row = verdicts(sealdyn("check", SCENARIOS / "hang_up.toml", "--json", cwd=tmp_path))["hang_up"]
-    assert row["verdict"] == "fail" and row["value"] == 25.0 and row["needed"] == pytest.approx(31.0, rel=1e-5)
-    more = ["--set", "closing.spring_force=40 N", "--json"]
-    assert verdicts(sealdyn("check", SCENARIOS / "hang_up.toml", *more, cwd=tmp_path))["hang_up"]["verdict"] == "pass"
-
-
 def test_check_prints_the_lines_of_the_readme(tmp_path):
     page = (SCENARIOS / "README.md").read_text()
     (seal,) = re.findall(r"```toml\n(.*?)```", (SCENARIOS.parent / "README.md").read_text(), re.DOTALL)

@@ -13,6 +13,7 @@ def test_scenarios():
     scenarios(ledger, 7, range(1000))
     assert ledger.ways == {}
     assert ledger.counts["scenario read: done"] > 50 and ledger.counts["scenario read: refused"] > 500
+    assert ledger.counts["scenario sized: done"] > 50
 
 
 OFTEN = (

@@ -12,7 +12,6 @@ from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.run_state import RunState
 from sealdyn.dynamics.signals import signals
 from sealdyn.faces.geometry import DZ
-from sealdyn.films import film_named
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scene.excitation import Shaft
 from sealdyn.scene.forces import Contact
@@ -146,9 +145,3 @@ def test_rough_faces_meet_where_the_cone_brings_them_together():
     assert seen["contact_force"][0] == 0.0
     assert seen["contact_force"][-1] > 1.0
     assert seen["h_min_radius"][-1] == R_O
-
-
-def test_which_films_take_it():
-    changing = film(coning_per_speed_squared=1e-10)
-    taken = {name: film_named(name).accepts(changing) == "" for name in ("linear", "radial")}
-    assert taken == {"linear": False, "radial": True}

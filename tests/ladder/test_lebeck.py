@@ -26,9 +26,7 @@ from sealdyn.scene.patterns import Waviness
 from sealdyn.scene.rings import Stator, Support
 from sealdyn.scene.scene import Scene, SceneError
 from sealdyn.simulation.selection import check_method, choose_method
-from sealdyn.simulation.verification_run import ProgressSink
-from sealdyn.solvers.contract import Counts, SolverFailure, Status
-from sealdyn.solvers.integrate import solve
+from sealdyn.solvers.contract import Counts, SolverFailure
 from sealdyn.solvers.methods import METHODS
 from sealdyn.studies import equilibrium
 
@@ -203,16 +201,6 @@ def test_other_films_are_not_for_the_method():
     with pytest.raises(SceneError) as error:
         check_method(Model(scenario.scene, 1e-3), "trbdf2")
     assert error.value.key == "run.solver"
-
-
-def test_a_run_with_an_observer_ends_well():
-    scenario = lebeck(*COARSE)
-    model = Model(scenario.scene, 1e-3)
-    run = RunState(model, 5e-3)
-    run.y0[0] = 0.3e-6
-    outcome = solve(run, "trbdf2", 1e-3, ProgressSink(run), tolerance=1e-4)
-    assert outcome.status == Status.OK
-    assert len(run.contacts.state()) > 0
 
 
 def test_waves_that_turn_have_no_steady_film():

@@ -4,6 +4,7 @@ and ramps."""
 import numpy as np
 import pytest
 from command import SCENARIOS
+from in_process import InProcess
 from own_wavy_wear import touching
 from scipy.optimize import brentq
 
@@ -54,21 +55,14 @@ def test_a_ring_that_does_not_follow_allows_what_a_static_balance_says():
 @pytest.mark.slow
 def test_a_ring_that_follows_allows_any_small_tilt():
     scenario = read_scenario(SCENARIOS / "run_in.toml", ["run.accuracy=1e-5"])
-    answer = contact_onset.run(scenario, Settings(limit="wear"), Alone())
+    answer = contact_onset.run(scenario, Settings(limit="wear"), InProcess())
     found = answer.numbers["allowed"]
     assert answer.numbers["nonlinear"] == 0.0 and found["value"] is None and "failed" not in found
     assert answer.numbers["units"]["allowed/at_rest"] == "m/s"
     none = read_scenario(SCENARIOS / "run_in.toml", ["contact.stator_wear_coefficient=0",
                                                      "contact.rotor_wear_coefficient=0"])  # fmt: skip
     assert allowed(none, {"key": "rotor.runout", "share": 0.1, "limit": "wear"})["failed"]
-    assert "allowed" not in contact_onset.run(scenario, Settings(share=0.0), Alone()).numbers
-
-
-class Alone:
-    """Tools of a study without processes."""
-
-    def map(self, function, points, what=""):
-        return [function(point) for point in points]
+    assert "allowed" not in contact_onset.run(scenario, Settings(share=0.0), InProcess()).numbers
 
 
 GAS = ["film.gas_reynolds={cells=[6, 16]}", "run.accuracy=0.05", "stator.misalignment=0"]
@@ -88,5 +82,5 @@ def test_a_film_that_stores_touches_at_the_end_of_a_ramp():
 @pytest.mark.slow
 def test_a_ring_that_follows_on_gas_does_not_touch_within_twice_its_linear_onset():
     scenario = read_scenario(SCENARIOS / "gas_reynolds_reference.toml", GAS)
-    answer = contact_onset.run(scenario, Settings(), Alone())
+    answer = contact_onset.run(scenario, Settings(), InProcess())
     assert answer.numbers["not_before"] > answer.numbers["formula"] and "failed" not in answer.numbers

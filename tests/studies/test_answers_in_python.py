@@ -28,16 +28,6 @@ def test_a_study_leaves_nothing_without_an_archive(tmp_path, monkeypatch):
     assert found.data["roots.clearance"].dims == ("roots",) and found.data.sizes["roots"] == 1
 
 
-def test_a_study_of_keys_has_them_as_dimensions(tmp_path):
-    grid = {"vary": ["rotor.runout=10 urad,20 urad", "film.clearance=9:11 um:3"], "outputs": "h_min.value"}
-    found = sealdyn.study("sweep", SCENARIO, out=tmp_path / "sweep.h5", workers=1, **grid)
-    assert found.archive == tmp_path / "sweep.h5" and found.archive.is_file()
-    assert dict(found.data.sizes) == {"rotor.runout": 2, "film.clearance": 3}
-    assert found.data["h_min.value"].attrs["units"] == "m" and (found.data.status == "ok").all()
-    with sealdyn.open_archive(found.archive) as kept:
-        assert np.array_equal(kept["h_min.value"], found.data["h_min.value"])
-
-
 def test_fields_and_columns_of_an_answer_lie_along_what_its_study_names():
     field = sealdyn.study("pressure", SCENARIO, workers=1)
     assert field.data["pressure.p"].dims == ("pressure.r", "pressure.theta")

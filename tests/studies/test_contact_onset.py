@@ -104,8 +104,7 @@ def test_rough_faces_touch_where_their_asperities_meet(found):
 def test_an_onset_far_away_is_not_followed():
     """A forcing of a nanoradian: linear theory says by how much it may grow, and nothing else is done."""
     scenario = sealdyn.read_scenario(SCENARIOS / "fmr_reference.toml", ["stator.misalignment=1e-9"])
-    point = {"key": "stator.misalignment", "margin": 1e-3, "tolerance": 1e-5, "most": 1e3, "set": {}, "floor": False}
-    row = onset(scenario, point)
+    row = onset(scenario, {"key": "stator.misalignment", **POINT})
     assert "failed" in row and "path" not in row
     assert row["times_own"] == pytest.approx(row["formula"] / 1e-9) and row["times_own"] > 1e6
 
@@ -231,9 +230,8 @@ def test_a_figure_shows_why_an_onset_is_not_followed(tmp_path):
 
 def test_a_path_that_costs_too_much_is_given_up(monkeypatch):
     scenario = sealdyn.read_scenario(SCENARIOS / "fmr_reference.toml")
-    point = {"key": "stator.misalignment", "margin": 1e-3, "tolerance": 1e-5, "most": 1e3, "set": {}, "floor": False}
     monkeypatch.setattr(orbit_path, "MOST_WORK", 1000)
-    row = onset(scenario, point)
+    row = onset(scenario, {"key": "stator.misalignment", **POINT})
     assert "right-hand sides" in row["failed"] and 1 <= len(row["path"]["forcing"]) < 5 and row["formula"] > 0
 
 

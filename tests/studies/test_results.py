@@ -207,10 +207,3 @@ def test_points_that_measure_time_are_done_here_and_not_for_others(tmp_path):
     tools = StudyContext(journal, elsewhere, quiet, Results(tmp_path / "kept"))
     assert tools.alone().map(partial(counted, 3), [{"x": 1}]) == [{"y": 3, "many": [1, 2]}]
     assert len(journal.rows) == 1 and not (tmp_path / "kept").exists()
-
-
-def test_a_checkpoint_and_a_folder_have_one_way_in(tmp_path):
-    for store in (Checkpoint(tmp_path / "j", "a"), Results(tmp_path / "r")):
-        assert store.get("k") is None
-        store.add("k", {"y": 0.1 + 0.2})
-        assert store.get("k") == {"y": 0.1 + 0.2}

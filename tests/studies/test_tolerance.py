@@ -5,10 +5,9 @@ import math
 
 import numpy as np
 import pytest
-from command import SCENARIOS, sealdyn
+from command import SCENARIOS
 from drawn import drawn, panel, text_trouble
-from killed import COMMAND, kill_midway, mark_first
-from scipy.stats import kstest, multivariate_normal, norm, sobol_indices, truncnorm, uniform
+from scipy.stats import kstest, norm, sobol_indices, truncnorm, uniform
 
 from sealdyn.dynamics.run_state import FilmClosed
 from sealdyn.numerics import parallel
@@ -29,6 +28,7 @@ from sealdyn.studies.tolerance.scatter import (
 )
 
 PATH = SCENARIOS / "fms_reference.toml"
+FILM = "film.coefficients={tilt_stiffness=5000, tilt_damping=4, axial_stiffness=6e6, axial_damping=5e3}"
 LINEAR = ["run.turns=2", 'run.start="steady"', "film.model=linear", "stator.misalignment=0"]
 ANGLES = ("rotor.runout", "stator.misalignment", "rotor.runout_phase")
 
@@ -336,8 +336,7 @@ def test_an_output_that_does_not_vary_has_no_index(tmp_path, closed_form):
 def test_a_linear_film_passes_a_normal_runout_on(tmp_path):
     """Small perturbations: the relative misalignment of a stator on a linear film is T times the runout, with
     (K_s - I w^2 + i D_s w) G = (K_f + i D_f w/2) (runout - G); so it is normal, with T times its deviation."""
-    film = "film.coefficients={tilt_stiffness=5000, tilt_damping=4, axial_stiffness=6e6, axial_damping=5e3}"
-    answer = tolerance(tmp_path, "rotor.runout=normal(25 urad, 3 urad)", *LINEAR, film, samples=64, indices=False,
+    answer = tolerance(tmp_path, "rotor.runout=normal(25 urad, 3 urad)", *LINEAR, FILM, samples=64, indices=False,
                        outputs="relative_misalignment.max")  # fmt: skip
     w, inertia, support, damping = 1000.0, 8e-4, 5e5 * 0.04**2 / 2, 300 * 0.04**2 / 2
     ring, gap = support - inertia * w**2 + 1j * damping * w, 5000 + 4j * w / 2
@@ -357,9 +356,8 @@ def test_a_linear_film_passes_a_normal_runout_on(tmp_path):
 
 def test_indices_of_a_linear_film(tmp_path):
     """Standing and turning misalignment add at their largest: T_s b + T_d a, so the indices are variances' shares."""
-    film = "film.coefficients={tilt_stiffness=5000, tilt_damping=4, axial_stiffness=6e6, axial_damping=5e3}"
     scatter = ["rotor.runout=normal(25 urad, 2 urad)", "stator.misalignment=normal(25 urad, 4 urad)"]
-    answer = tolerance(tmp_path, scatter, *LINEAR, film, samples=64, outputs="relative_misalignment.steady_max")
+    answer = tolerance(tmp_path, scatter, *LINEAR, FILM, samples=64, outputs="relative_misalignment.steady_max")
     w, inertia, support, damping = 1000.0, 8e-4, 5e5 * 0.04**2 / 2, 300 * 0.04**2 / 2
     turning = (support - inertia * w**2 + 1j * damping * w) / (support - inertia * w**2 + 5000 + 1j * w * (damping + 2))
     standing = support / (support + 5000 - 4j * w / 2)
@@ -486,21 +484,6 @@ def test_an_interrupted_study_goes_on(tmp_path, closed_form):
     assert {k: v for k, v in whole.items() if k != "archive"} == {k: v for k, v in answer.items() if k != "archive"}
 
 
-@pytest.mark.slow
-def test_a_killed_study_goes_on_without_repeating(tmp_path):
-    command = [
-        *COMMAND, "tolerance", str(PATH), "--scatter", "rotor.runout=normal(5 urad)", "--samples", "16", "--set",
-        "run.turns=5", "--out", str(tmp_path / "t.h5"), "--workers", "1", "--no-plot", "--json",
-    ]  # fmt: skip
-    journal = tmp_path / "t.partial.jsonl"
-    kill_midway(command, journal, 2)
-    mark_first(journal, "h_min.value", 0.123456)
-    done = sealdyn(*command[command.index("study") :], cwd=tmp_path)
-    answer = done.found
-    assert done.code == 0 and answer["samples"]["outputs"]["h_min.value"].count(0.123456) == 1 and not journal.exists()
-    assert "48 runs (16 samples x (1 keys + 2))" in done.err
-
-
 def test_chart_and_tables_show_the_answer(tmp_path, closed_form):
     closed_form(lambda x, y: x + 0.1 * y, **{"h_min.of_clearance": lambda value: 1 - value / 25e-6})
     answer = tolerance(tmp_path, THREE[:2], samples=64)
@@ -541,12 +524,3 @@ def test_a_weight_makes_half_the_scatter_of_any_law():
         assert np.all(w <= 2 + 1e-12) and np.mean(w) == pytest.approx(1, abs=0.01)
         square = np.mean((x - scatter.centre) ** 2)
         assert np.average((x - scatter.centre) ** 2, weights=w) == pytest.approx(square / 4, rel=0.03)
-
-
-def test_dependent_normals_are_one_distribution():
-    """Joint chance of two correlated keys, against the bivariate normal integral."""
-    scatters = read_scatter(scenario(), ["rotor.runout=normal(0, 1)", "stator.misalignment=normal(0, 1)"])
-    factor = read_correlations(scenario(), ["rotor.runout, stator.misalignment = 0.7"], [s.key for s in scatters])
-    a, _ = points(scatters, 8192, 1, factor)
-    exact = multivariate_normal([0, 0], [[1, 0.7], [0.7, 1]]).cdf([-0.5, 0.3])
-    assert np.mean((a[:, 0] < -0.5) & (a[:, 1] < 0.3)) == pytest.approx(exact, abs=0.005)
