@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import pytest
 
-from sealdyn import cli
+from sealdyn import cli, read_scenario
 
 SCENARIOS = Path(__file__).parents[1] / "scenarios"
 REFERENCE = SCENARIOS / "fmr_reference.toml"
@@ -32,6 +32,11 @@ class Answer(NamedTuple):
         answer = json.loads(self.out, parse_constant=lambda word: pytest.fail(f"{word} is no JSON"))
         assert isinstance(answer, dict)
         return answer
+
+
+def read(name: str, *overrides: str):
+    """A shipped scenario with these values set."""
+    return read_scenario(SCENARIOS / f"{name}.toml", list(overrides))
 
 
 def settings(changes: dict) -> list[str]:

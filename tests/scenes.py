@@ -236,6 +236,17 @@ def run(scene, turns=None, accuracy=1e-6, method="adams", per_turn=64, start="re
     return Run(ready, outcome, sink)
 
 
+def rates_of(segment):
+    """Right-hand side of a segment as SciPy takes it."""
+
+    def rates(t, y):
+        out = np.empty(segment.size)
+        segment.rhs(t, y, out)
+        return out
+
+    return rates
+
+
 def apart(ready, one, other, interval):
     """Largest difference of displacements, relative to their scales, at samples every `interval` (s) of two runs, each
     a method and options of `solve`; both must end well."""

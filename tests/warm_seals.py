@@ -5,6 +5,7 @@ Tolerances are those that the rows were given with.
 """
 
 from sealdyn import Scenario
+from sealdyn.dynamics.warm_state import at_work
 
 # The README's pump in water of 30 degC, with a carbon ring that floats and a ring of silicon carbide that turns.
 PUMP = {
@@ -121,6 +122,18 @@ def warm_seal(*changes, **values) -> Scenario:
     for table in (*changes, {key.replace("__", "."): value for key, value in values.items()}):
         scenario = scenario.with_(table) if table else scenario
     return scenario
+
+
+def by_hand(scenario, speed=None) -> Scenario:
+    """The same seal without heat, the numbers of the warm state it works in, at a speed (rad/s) if given, in place of
+    liquid and coning."""
+    plain, state = at_work(scenario.scene, speed)
+    table = scenario.to_dict()
+    film = {k: v for k, v in table["film"].items() if k not in ("heat", "liquid", "temperature")}
+    liquid = {name: getattr(plain.film, name) for name in ("density", "specific_heat", "vapour_pressure")}
+    film |= {"viscosity": state.viscosity, "coning": state.coning} | {k: v for k, v in liquid.items() if v is not None}
+    turning = {} if speed is None else {"shaft": {"speed": speed}}
+    return Scenario.from_dict(table | {"film": film} | turning, "warm")
 
 
 def scene_of(*changes, **values):

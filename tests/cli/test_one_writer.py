@@ -2,12 +2,9 @@
 
 import os
 import signal
-import subprocess
-import sys
-import time
 
 import pytest
-from command import SCENARIOS, sealdyn
+from command import SCENARIOS, sealdyn, settings, started, until
 from killed import COMMAND, kill_midway
 
 from sealdyn.archive import ArchiveError, only_writer, read_info
@@ -16,25 +13,12 @@ from sealdyn.simulation.simulate import simulate
 from sealdyn.studies._runner import run_study
 
 SEAL = SCENARIOS / "fms_reference.toml"
-RUN = [
-    sys.executable, "-m", "sealdyn.cli", "run", str(SEAL), "--no-plot", "--set", "run.turns=200000", "--set",
-    "run.samples_per_turn=8", "--out",
-]  # fmt: skip
+RUN = ["run", SEAL, "--no-plot", *settings({"run.turns": 200000, "run.samples_per_turn": 8}), "--out"]
 
 
-def begun(command, there):
-    """A process that has come as far as `there()`."""
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    until = time.monotonic() + 120
-    while not there():
-        assert process.poll() is None and time.monotonic() < until
-        time.sleep(0.02)
-    return process
-
-
-def turned_away(command, out):
+def turned_away(words, out):
     """One line, exit code 2, of this process: the other one writes."""
-    code, _, said = sealdyn(*command[command.index("sealdyn.cli") + 1 :], cwd=out.parent)
+    code, _, said = sealdyn(*words, cwd=out.parent)
     assert code == 2, said
     slow = ("compiling kernels", "making ready")
     lines = [line for line in said.strip().splitlines() if not line.startswith(slow)]
@@ -50,11 +34,12 @@ def left(folder):
 def test_the_second_run_is_turned_away_and_a_dead_one_holds_nothing(tmp_path):
     out = tmp_path / "a.h5"
     partial = tmp_path / "a.partial.h5"
-    first = begun([*RUN, str(out)], partial.exists)
+    first = started(*RUN, out, cwd=tmp_path)
+    until(partial.exists, first, timeout=120)
     try:
-        turned_away([*RUN, str(out)], out)
-        turned_away([*RUN, str(out), "--continue"], out)
-        turned_away([*COMMAND, "critical-speed", str(SEAL), "--out", str(out), "--workers", "1"], out)
+        turned_away([*RUN, out], out)
+        turned_away([*RUN, out, "--continue"], out)
+        turned_away(["study", "critical-speed", SEAL, "--out", out, "--workers", 1], out)
         with pytest.raises(ArchiveError, match="another run or study"):
             simulate(read_scenario(SEAL), out)
         with pytest.raises(ArchiveError, match="another run or study"):
@@ -65,7 +50,7 @@ def test_the_second_run_is_turned_away_and_a_dead_one_holds_nothing(tmp_path):
         first.wait()
     kept = read_info(partial)["rows"]
     assert kept > 0
-    assert sealdyn(*RUN[3:], out, "--set", "run.turns=2", cwd=tmp_path).code == 0
+    assert sealdyn(*RUN, out, "--set", "run.turns=2", cwd=tmp_path).code == 0
     assert read_info(out)["status"] == "ok" and left(tmp_path) == ["a.h5"]
 
 

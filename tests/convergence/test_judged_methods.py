@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from scenes import CLEARANCE, NOTHING, SUPPORT, Sink, film, fmr, fms, free_ring, prepared, ring
+from scenes import CLEARANCE, NOTHING, SUPPORT, Sink, film, fmr, fms, free_ring, prepared, rates_of, ring
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
@@ -123,15 +123,8 @@ def test_the_judge_sees_a_kink_wherever_it_lies(nodes):
 def test_the_judge_agrees_with_scipy_on_the_nonlinear_film():
     ready = prepared(fmr(), 0.005, 1e-11)
     y, _ = integrated(ready, collocation, "gauss", 1e-11)
-    segment = ready.segment(0)
-
-    def rhs(t, state):
-        out = np.empty(segment.size)
-        segment.rhs(t, state, out)
-        return out
-
     atol = 1e-14 * ready.model.scales
-    found = solve_ivp(rhs, (0.0, 0.005), ready.y0, "DOP853", rtol=2.3e-14, atol=atol).y[:, -1]
+    found = solve_ivp(rates_of(ready.segment(0)), (0.0, 0.005), ready.y0, "DOP853", rtol=2.3e-14, atol=atol).y[:, -1]
     m = ready.model.unknowns.n_mechanical
     assert np.max(np.abs(y - found)[:m] / ready.model.scales[:m]) < 1e-12
 

@@ -53,6 +53,17 @@ def pump():
     return parse_scenario(PUMP, "pump").scene, 2 * 2 * math.pi / 309.0
 
 
+def known_of(drawn, by=truth, count=240):
+    """Scales, instants (s), and the truth there of a drawn scene."""
+
+    def anew(accuracy=drawn.accuracy / 100):
+        return prepared(drawn.scene, drawn.duration, accuracy, drawn.start)
+
+    reference = anew()
+    scales, times = ErrorScales(reference), instants(np.random.default_rng(5), reference, count)
+    return scales, times, by(anew, scales, times, drawn.accuracy, choose_method(reference)[0], math.inf)
+
+
 @pytest.mark.parametrize(
     ("make", "accuracy"),
     [
@@ -65,17 +76,11 @@ def pump():
     ids=lambda given: given.__name__ if callable(given) else f"{given:.0e}",
 )
 def test_run_and_certificate(make, accuracy):
-    scene, duration = make()
-
-    def anew(accuracy=accuracy / 100):
-        return prepared(scene, duration, accuracy)
-
-    reference = anew()
-    scales, times = ErrorScales(reference), instants(np.random.default_rng(5), reference)
-    known = truth(anew, scales, times, accuracy, choose_method(reference)[0], math.inf)
+    drawn = Drawn(*make(), accuracy, "rest", ())
+    scales, times, known = known_of(drawn)
     # Where a hit has magnified the references' own errors, nothing is known any more.
     assert known.rows > 30
-    run, _, found, outcome, columns, contacts, _ = automatic(Drawn(scene, duration, accuracy, "rest", ()), times)
+    run, _, found, outcome, columns, contacts, _ = automatic(drawn, times)
     errors = scales.errors(columns[: known.rows], known.columns[: known.rows]).max()
     wrong, depth, instant = contact_errors(contacts, known.contacts, times[known.rows - 1], run, scales.rate)
     assert outcome.status == "ok" and found["met"]
@@ -113,14 +118,9 @@ def test_chaos_is_promised_up_to_its_horizon():
     from any other run by more than the film."""
     scene, accuracy = read_scenario(SCENARIOS / "rub_chaotic.toml").scene, 1e-6
     duration = 40 * 2 * math.pi / 2442.0
-
-    def anew(accuracy=accuracy / 100):
-        return prepared(scene, duration, accuracy)
-
-    reference = anew()
-    scales, times = ErrorScales(reference), instants(np.random.default_rng(5), reference)
-    known = truth(anew, scales, times, accuracy, choose_method(reference)[0], math.inf)
-    _, _, found, outcome, columns, _, _ = automatic(Drawn(scene, duration, accuracy, "rest", ()), times)
+    drawn = Drawn(scene, duration, accuracy, "rest", ())
+    scales, times, known = known_of(drawn)
+    _, _, found, outcome, columns, _, _ = automatic(drawn, times)
     assert outcome.status == "ok" and not found["met"] and 0.0 < found["horizon"] < duration
     both = min(known.rows, int(np.searchsorted(times, found["horizon"])))
     assert both > 50 and scales.errors(columns[:both], known.columns[:both]).max() <= accuracy
@@ -133,13 +133,7 @@ def test_a_gas_dam_rings_after_every_step_too_long():
     the asked accuracy from the truth; followed along the steps their errors were a twentieth of it."""
     drawn = gas(np.random.default_rng([2026, 91]))
     drawn = replace(drawn, duration=0.3 * drawn.duration)
-
-    def anew(accuracy=drawn.accuracy / 100):
-        return prepared(drawn.scene, drawn.duration, accuracy, drawn.start)
-
-    reference = anew()
-    scales, times = ErrorScales(reference), instants(np.random.default_rng(5), reference)
-    known = truth(anew, scales, times, drawn.accuracy, choose_method(reference)[0], math.inf)
+    _, times, known = known_of(drawn)
     run, _, found, outcome, columns, *_ = automatic(drawn, times)
     errors = ErrorScales(run).errors(columns[: known.rows], known.columns[: known.rows])
     assert outcome.status == "ok" and found["met"] and known.rows == len(times)
@@ -153,13 +147,7 @@ def test_gas_that_stores(number):
     drawn = gas_reynolds(np.random.default_rng([2027, number]), other_faces=False)
     cells = replace(drawn.scene.film.gas_reynolds, cells=(6, 12))
     drawn = replace(drawn, scene=with_values(drawn.scene, {"film.gas_reynolds": cells}))
-
-    def anew(accuracy=drawn.accuracy / 100):
-        return prepared(drawn.scene, drawn.duration, accuracy, drawn.start)
-
-    reference = anew()
-    scales, times = ErrorScales(reference), instants(np.random.default_rng(5), reference, 24)
-    known = truth_in_own_words(anew, scales, times, drawn.accuracy, choose_method(reference)[0], math.inf)
+    scales, times, known = known_of(drawn, truth_in_own_words, 24)
     assert known.rows == len(times)
     _, method, found, outcome, columns, *_ = automatic(drawn, times)
     errors = scales.errors(columns, known.columns).max()

@@ -18,12 +18,12 @@ from warm_seals import (
     ROWS,
     TOLERANCE,
     VG32,
+    by_hand,
     scene_of,
     warm_seal,
 )
 
 import sealdyn
-from sealdyn import Scenario
 from sealdyn.dynamics.interface import Interface
 from sealdyn.dynamics.warm_state import NoWarmState, at_work, warming
 
@@ -162,19 +162,6 @@ FILMS = {
         "film.profile": {"radius": [0.025, 0.0275, 0.03], "depth": [0.0, 5e-8, 0.0]},
     },
 }  # fmt: skip
-
-
-def by_hand(scenario):
-    """The same seal without heat, the numbers of the warm state it works in in place of liquid and coning."""
-    state = warming(scenario.scene).working()
-    table = scenario.to_dict()
-    film = {k: v for k, v in table["film"].items() if k not in ("heat", "liquid", "temperature")}
-    liquid = warming(scenario.scene).at(state.rise).film
-    film |= {"viscosity": state.viscosity, "coning": state.coning, "density": liquid.density}
-    film |= {"specific_heat": liquid.specific_heat}
-    if liquid.vapour_pressure is not None:
-        film["vapour_pressure"] = liquid.vapour_pressure
-    return Scenario.from_dict(table | {"film": film}, "by hand")
 
 
 @pytest.mark.parametrize("changes", FILMS.values(), ids=FILMS)

@@ -7,17 +7,16 @@ import numpy as np
 import pytest
 from own_warm import Seal, of_oscillation, one_temperature, slow_course, slow_root, warm
 from scipy.optimize import brentq
+from test_heated_ring import CARBON, STEEL, body
+from test_heated_ring import SILICON_CARBIDE as CARBIDE
 from warm_seals import OIL, ROUGH, warm_seal
 
 import sealdyn
 from sealdyn.dynamics.warm_course import course
 from sealdyn.dynamics.warm_state import Warming, warming
-from sealdyn.faces.ring_heat import RingBody, conduction, ring_heat, ring_states
+from sealdyn.faces.ring_heat import conduction, ring_heat, ring_states
 from sealdyn.simulation.heat import limits_of
 
-CARBON = dict(density=1800.0, modulus=20e9, poisson=0.2, expansion=4.5e-6, conductivity=10.0, specific_heat=750.0)
-CARBIDE = dict(density=3100.0, modulus=410e9, poisson=0.16, expansion=4e-6, conductivity=125.0, specific_heat=670.0)
-STEEL = dict(density=7950.0, modulus=193e9, poisson=0.3, expansion=16e-6, conductivity=15.0, specific_heat=500.0)
 BRONZE = dict(density=8800.0, modulus=100e9, poisson=0.34, expansion=18e-6, conductivity=50.0, specific_heat=380.0)
 
 
@@ -42,16 +41,10 @@ def oil_heat(kelvin):
     return 870.0 * 2000.0 + 0.0 * kelvin
 
 
-def ring(inner, outer, length, material, convection, band, wetted=None, wet="outer"):
-    """A ring by its radii and lengths in mm."""
-    sizes = [1e-3 * x for x in (inner, outer, length, *band)]
-    return RingBody(*sizes, **material, convection=convection, wetted_length=1e-3 * (wetted or length), wet=wet)
-
-
-PUMP = ring(23, 32, 20, CARBON, 12e3, (25, 30), 12), ring(24, 32, 10, CARBIDE, 19e3, (25, 30))
+PUMP = body(23, 32, 20, CARBON, 12e3, (25, 30), 12), body(24, 32, 10, CARBIDE, 19e3, (25, 30))
 OF_PUMP = 1e6, 308.923278, 0.75, 40.0, 303.15, water_viscosity, water_heat
-SHIPPED = ring(29, 36, 20, CARBON, 13590.0, (30.5, 34), 12), ring(29, 38, 10, CARBIDE, 21572.0, (30.5, 34))
-OILED = ring(33, 43, 15, BRONZE, 1400.0, (35, 40), 10), ring(34, 44, 14, STEEL, 2200.0, (35, 40))
+SHIPPED = body(29, 36, 20, CARBON, 13590.0, (30.5, 34), 12), body(29, 38, 10, CARBIDE, 21572.0, (30.5, 34))
+OILED = body(33, 43, 15, BRONZE, 1400.0, (35, 40), 10), body(34, 44, 14, STEEL, 2200.0, (35, 40))
 SEALS = {
     "pump, 400 urad": Seal(PUMP, 4e-4, *OF_PUMP),
     "pump, 50 urad": Seal(PUMP, 5e-5, *OF_PUMP),
@@ -88,7 +81,7 @@ def whole(name):
 
 def by_drawing(name):
     """With the numbers that the rings' drawings give."""
-    found = [ring_heat(body) for body in SEALS[name].rings]
+    found = [ring_heat(one) for one in SEALS[name].rings]
     return one_temperature(SEALS[name], [x.resistance for x in found], [x.coning_per_watt for x in found])
 
 
@@ -98,7 +91,7 @@ def numbers(state):
 
 @pytest.mark.parametrize("name", RINGS)
 def test_rings_of_the_seals_by_an_independent_program(name):
-    found = [ring_heat(body) for body in SEALS[name].rings]
+    found = [ring_heat(one) for one in SEALS[name].rings]
     resistances, conings, times = RINGS[name]
     assert [x.resistance for x in found] == pytest.approx(resistances, rel=6e-3)
     assert [x.coning_per_watt for x in found] == pytest.approx(conings, rel=3e-3)
@@ -149,8 +142,8 @@ def test_what_one_temperature_is_worth(name):
 
 INSIDE = Seal(
     (
-        ring(23, 32, 20, CARBON, 12e3, (25, 30), 12, "bore"),
-        ring(24, 32, 10, CARBIDE, 18e3, (25, 30), wet="bore"),
+        body(23, 32, 20, CARBON, 12e3, (25, 30), 12, "bore"),
+        body(24, 32, 10, CARBIDE, 18e3, (25, 30), wet="bore"),
     ), -2e-4, -1e6, 0.0, 0.75, 40.0, 303.15, water_viscosity, water_heat,
 )  # fmt: skip
 
@@ -158,7 +151,7 @@ INSIDE = Seal(
 def test_a_seal_pressurised_inside_hunts_before_it_folds():
     """Onset of hunting at 7408 rpm with a period of 16 s, fold at 7935 rpm (both rings by another program's finite
     volumes), from six states a ring; one temperature would see nothing below the fold, its loop gain is 0.32."""
-    rings = [ring_heat(body) for body in INSIDE.rings]
+    rings = [ring_heat(one) for one in INSIDE.rings]
     numbers = [x.resistance for x in rings], [x.coning_per_watt for x in rings]
 
     def state(rpm):
@@ -166,7 +159,7 @@ def test_a_seal_pressurised_inside_hunts_before_it_folds():
         return seal, one_temperature(seal, *numbers)
 
     def slow(rpm):
-        return slow_root(*state(rpm), [ring_states(body) for body in INSIDE.rings], 0.39j)
+        return slow_root(*state(rpm), [ring_states(one) for one in INSIDE.rings], 0.39j)
 
     onset = brentq(lambda rpm: slow(rpm).real, 7300.0, 7450.0, xtol=1.0)
     assert onset == pytest.approx(7408.0, rel=0.01)
@@ -268,10 +261,10 @@ def test_a_course_oscillates_and_grows_as_the_slow_eigenvalue_says(rpm):
 @pytest.mark.parametrize("rpm", [7300, 7500])
 def test_so_do_all_cells_of_both_rings(rpm):
     """With this test's own film, squeezed, and midpoint rule."""
-    rings = [ring_heat(body) for body in INSIDE.rings]
+    rings = [ring_heat(one) for one in INSIDE.rings]
     seal, step = replace(INSIDE, speed=rpm * RPM), 0.2
     state = one_temperature(seal, [x.resistance for x in rings], [x.coning_per_watt for x in rings])
-    rises = slow_course(seal, state, [conduction(body) for body in INSIDE.rings], 240, step, 1.001)
+    rises = slow_course(seal, state, [conduction(one) for one in INSIDE.rings], 240, step, 1.001)
     found = warming(inside(rpm).scene)
     slow = found.continued(found.cold_state).slow
     assert of_oscillation(rises[40::5], 5 * step) == pytest.approx(slow, abs=0.06 * abs(slow))

@@ -5,10 +5,9 @@ import math
 
 import numpy as np
 import pytest
-from command import SCENARIOS
+from command import read
 from drawn import drawn, has_points, panel, text_trouble
 
-import sealdyn
 from sealdyn.analysis import poincare_map
 from sealdyn.analysis.poincare_map import SAMPLES, PeriodMap, share_below
 from sealdyn.analysis.rotating_wave import RotatingWave, free_model, least_damped
@@ -21,10 +20,6 @@ from sealdyn.scene.scene import with_values
 from sealdyn.studies._runner import run_study
 
 QUICK = {"ramp": 10, "drop": 6, "keep": 16, "exponent_turns": 16, "judge_turns": 0}
-
-
-def read(name, *overrides):
-    return sealdyn.read_scenario(SCENARIOS / f"{name}.toml", list(overrides))
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from command import SCENARIOS
+from command import read
 from drawn import curve, drawn, has_points, panel, text_trouble
 
 from sealdyn.archive import read_study
@@ -13,17 +13,12 @@ from sealdyn.dynamics.model import Model
 from sealdyn.faces.geometry import COLLAPSE
 from sealdyn.report.charts import study_runup
 from sealdyn.scenario.errors import ScenarioError
-from sealdyn.scenario.reader import read_scenario
 from sealdyn.studies import runup
 from sealdyn.studies._runner import run_study
 from sealdyn.studies.runup.speed_ramp import touch_tilt
 
 GREEN = 5890.6
 NARROW = {"begin": 5600, "end": 6185, "rates": "8000, 20000, 60000"}
-
-
-def read(name="runup_past_threshold", *overrides):
-    return read_scenario(SCENARIOS / f"{name}.toml", list(overrides))
 
 
 def study(folder, scenario, **flags):
@@ -114,7 +109,7 @@ def test_touching_rate_of_a_linear_film(tmp_path):
 
 @pytest.mark.slow
 def test_a_nonlinear_film_touches_at_other_rates_and_says_so(tmp_path):
-    answer = study(tmp_path, read(), begin=5000, end=5868, rates="1500, 10000")
+    answer = study(tmp_path, read("runup_past_threshold"), begin=5000, end=5868, rates="1500, 10000")
     slow, fast = answer["rows"]
     assert slow["status"] == "collapsed" and fast["status"] == "ok"
     assert slow["h_min_way"] == "down"

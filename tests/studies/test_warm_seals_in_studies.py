@@ -4,12 +4,12 @@ they take the warm film of each."""
 import math
 
 import pytest
-from warm_seals import ROUGH, warm_seal
+from warm_seals import ROUGH, by_hand, warm_seal
 
 import sealdyn
 from sealdyn import Scenario
 from sealdyn.dynamics.model import Model
-from sealdyn.dynamics.warm_state import at_work, warming
+from sealdyn.dynamics.warm_state import warming
 from sealdyn.scene.fluid import in_numbers
 from sealdyn.studies.contact_onset import SETTLED
 
@@ -39,16 +39,6 @@ AT_ONE_SPEED = {
     "coefficients": (SMOOTH, {"points": 2, "speed": "308.923278 rad/s"}),
     "sweep": (SMOOTH, {"vary": "rotor.runout=10,20 urad"}),
 }
-
-
-def by_hand(scenario, speed=SPEED):
-    """The same seal without heat, the numbers of its warm state at a speed (rad/s) in place of liquid and coning."""
-    plain, state = at_work(scenario.scene, speed)
-    table = scenario.to_dict()
-    film = {k: v for k, v in table["film"].items() if k not in ("heat", "liquid", "temperature")}
-    film |= {"viscosity": state.viscosity, "coning": state.coning, "density": plain.film.density}
-    film |= {"specific_heat": plain.film.specific_heat, "vapour_pressure": plain.film.vapour_pressure}
-    return Scenario.from_dict(table | {"film": film, "shaft": {"speed": speed}}, "warm")
 
 
 def study(name, scenario, **settings):

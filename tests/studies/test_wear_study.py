@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from command import SCENARIOS
+from command import SCENARIOS, read
 from drawn import text_trouble
 from killed import COMMAND, kill_midway
 from scenes import fms, ring
@@ -151,10 +151,6 @@ def test_slope_of_faces_at_rest_is_that_of_their_averages():
 
 
 # --- a cone runs in -------------------------------------------------------------------------------------
-
-
-def read(name, *overrides):
-    return sealdyn.read_scenario(SCENARIOS / f"{name}.toml", list(overrides))
 
 
 @pytest.fixture

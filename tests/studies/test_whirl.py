@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from scenes import fmr, fms, fmsr
+from scenes import fmr, fms, fmsr, rates_of
 from scipy.integrate import solve_ivp
 
 from sealdyn.analysis.rotating_wave import RotatingWave, branch, contact_tilt_aligned, free_model
@@ -48,14 +48,7 @@ def test_another_integrator_stays_on_the_whirl(family, place):
     _, scene, _, _, whirls = family
     whirl = whirls[place]
     model = free_model(scene, whirl.speed, accuracy=1e-10)
-    segment, turns = model.segment(), 3
-    end = turns * 2 * math.pi / whirl.frequency
-
-    def rhs(t, y):
-        yp = np.empty_like(y)
-        segment.rhs(t, y, yp)
-        return yp
-
+    rhs, end = rates_of(model.segment()), 3 * 2 * math.pi / whirl.frequency
     absolute = 1e-12 * model.scales
     found = solve_ivp(rhs, (0, end), whirl.y, method="DOP853", rtol=1e-11, atol=absolute).y[: model.unknowns.n, -1]
     # Whole turns later it is back where it was.
@@ -68,13 +61,7 @@ def test_departs_at_the_growth_rate_stated(family):
     _, scene, _, _, whirls = family
     whirl = whirls[30]
     model = free_model(scene, whirl.speed, accuracy=1e-10)
-    whirling, segment = RotatingWave(model), model.segment()
-
-    def rhs(t, y):
-        yp = np.empty_like(y)
-        segment.rhs(t, y, yp)
-        return yp
-
+    whirling, rhs = RotatingWave(model), rates_of(model.segment())
     start = whirling.state(whirl.q * 1.001, whirl.frequency)
     times = np.linspace(0.6, 1.6, 60) / abs(whirl.growth)
     found = solve_ivp(rhs, (0, times[-1]), start, method="DOP853", t_eval=times, rtol=1e-10, atol=1e-11 * model.scales)
