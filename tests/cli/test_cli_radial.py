@@ -10,6 +10,8 @@ from PIL import Image
 
 import sealdyn as package
 from sealdyn import ScenarioError, open_archive
+from sealdyn.dynamics.intervals import largest_value
+from sealdyn.radial_seals.followers import followers_of, largest_eccentricity, needed_preload
 from sealdyn.radial_seals.observers import _warnings
 from sealdyn.report.summary import run_answer
 from sealdyn.report.text import line_words
@@ -42,24 +44,13 @@ def test_the_shipped_seals_ride_all_the_way_round(path, tmp_path):
 
 def test_what_is_expected_of_them():
     """The numbers at the head of the files."""
-    lip, segments = (simulate_summary(path) for path in (LIP, SEGMENTS))
-    assert lip["closed_form"]["needed_preload"] / lip["follower"]["arc"] == pytest.approx(3.86, abs=0.01)
-    assert lip["closed_form"]["largest_eccentricity"] == pytest.approx(5.28e-3, abs=1e-5)
-    assert segments["follower"]["friction"] == pytest.approx(0.275)
-    assert segments["closed_form"]["largest_eccentricity"] == pytest.approx(0.12e-3, abs=2e-6)
-
-
-def simulate_summary(path):
-    from sealdyn.dynamics.intervals import largest_value
-    from sealdyn.radial_seals.followers import followers_of, largest_eccentricity, needed_preload
-
-    scene = read_scenario(path).scene
-    found, speed = followers_of(scene), largest_value(scene.shaft.speed)
-    return {
-        "follower": {"arc": found.arc, "friction": found.friction},
-        "closed_form": {"needed_preload": needed_preload(found, scene.shaft, speed),
-                        "largest_eccentricity": largest_eccentricity(found, scene.shaft, speed)},
-    }  # fmt: skip
+    scenes = [read_scenario(path).scene for path in (LIP, SEGMENTS)]
+    (lip, shaft), (segments, other) = ((followers_of(scene), scene.shaft) for scene in scenes)
+    speeds = [largest_value(one.speed) for one in (shaft, other)]
+    assert needed_preload(lip, shaft, speeds[0]) / lip.arc == pytest.approx(3.86, abs=0.01)
+    assert largest_eccentricity(lip, shaft, speeds[0]) == pytest.approx(5.28e-3, abs=1e-5)
+    assert segments.friction == pytest.approx(0.275)
+    assert largest_eccentricity(segments, other, speeds[1]) == pytest.approx(0.12e-3, abs=2e-6)
 
 
 @pytest.mark.core

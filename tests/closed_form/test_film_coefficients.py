@@ -90,15 +90,6 @@ def test_damping_keeps_its_digits_as_the_faces_become_flat(size, sign):
     )
 
 
-def test_printed_form_loses_the_digits_that_ours_keeps():
-    x = 1e-5
-    printed = (np.log(1 + x) - 2 * x / (2 + x)) / x**3
-    assert abs(printed * 12 - 1) > 1e-3
-    flat = film_coefficients(**REFERENCE | {"coning": 0.0}).tilt_damping
-    nearly = film_coefficients(**REFERENCE | {"coning": x * REFERENCE["clearance"] / 8e-3}).tilt_damping
-    assert nearly / flat == pytest.approx(float(squeeze_factor_of_green(x)) * 12, rel=1e-13)
-
-
 def strip(seal, films, rate=0):
     """int p ds over the face, inner pressure 0, of the strip `(h^3 p')' = 12 mu rate` on two edge films."""
     length, slope = seal["outer_radius"] - seal["inner_radius"], films[1] - films[0]

@@ -1,10 +1,8 @@
 """Contact of a tilted seal: the error of the load against the points around the circle.
 
-The reference seal touching at its inner edge: the patch is a few degrees wide (table below), and any fixed
-division of the circle either misses it or pays for thousands of angles.
+The reference seal touching at its inner edge: the patch is 4 to 14 degrees wide, and any fixed division of the circle
+either misses it or pays for thousands of angles (256 equal ones err by 9e-7 to 9e-5, a panel of 12 points by 1e-13).
 """
-
-import math
 
 import numpy as np
 import pytest
@@ -78,46 +76,3 @@ def test_the_points_given_are_enough(law):
         at = coning, draw.uniform(-3, 0.99) * C - low, tilt
         exact, found = answers(law, 80, *at), answers(law, None, *at)
         assert np.max(np.abs(found - exact)) < 1e-9 * exact[0], at
-
-
-def line(h_i, slope):
-    """int p r dr over one radius by a Gauss rule on the touching part; the circle's rule is what is compared."""
-    end = np.clip((C - h_i) / slope, 0.0, R_O - R_I)
-    node, weight = np.polynomial.legendre.leggauss(24)
-    r = 0.5 * end[:, None] * (1 + node)
-    x = (h_i[:, None] + slope[:, None] * r) / C
-    p = 300e6 * (0.5 - 35 / 32 * (x - x**3 + 3 * x**5 / 5 - x**7 / 7))
-    return np.sum(0.5 * end[:, None] * weight * p * (R_I + r), axis=1)
-
-
-def trapezoid(angles, offset, thinnest, tilt):
-    """Load of the reference seal by `angles` equal steps, the first `offset` of a step from the thinnest place."""
-    beta = 2 * np.pi * (np.arange(angles) + offset) / angles
-    h_i = thinnest + R_I * tilt * (1 - np.cos(beta))
-    touching = h_i < C
-    if not touching.any():
-        return 0.0
-    return 2 * np.pi / angles * np.sum(line(h_i[touching], CONING - tilt * np.cos(beta[touching])))
-
-
-# Half width of the patch and worst relative error of the load over the angle of the grid, as measured:
-#   h_min / c   half width   panel of 12    64 angles   256      1024     4096
-#   0.0         14.1 deg     3e-15          4e-4        9e-7     2e-10    5e-14
-#   0.5          9.9 deg     2e-15          1e-2        3e-6     2e-10    3e-13
-#   0.9          4.4 deg     1e-13          0.73        9e-5     5e-8     2e-11
-@pytest.mark.parametrize("thinnest, least", [(0.0, (1e-4, 3e-7, 1e-10)), (0.9, (0.3, 3e-5, 1e-8))])
-def test_a_fixed_division_of_the_circle_is_worse(thinnest, least):
-    """The panel against the trapezoid, which has to be thousands of angles for the same digits, and moves with the
-    patch: with 64 angles a grazing patch is missed or trebled as the tilt turns."""
-    tilt = C0 / R_I
-    half_width = math.degrees(math.acos(1 - C * (1 - thinnest) / (R_I * tilt)))
-    assert 4 < half_width < 15
-    exact = answers(LAW, 80, CONING, thinnest * C, tilt)[0]
-    panel = abs(answers(LAW, None, CONING, thinnest * C, tilt)[0] / exact - 1)
-    assert panel < 1e-11
-    offsets = np.linspace(0, 0.5, 9)
-    for angles, error in zip((64, 256, 1024), least, strict=True):
-        worst = max(abs(trapezoid(angles, o, thinnest * C, tilt) / exact - 1) for o in offsets)
-        assert worst > error > 100 * panel, (angles, worst, panel)
-    # The same integral after all.
-    assert trapezoid(2**15, 0.3, thinnest * C, tilt) == pytest.approx(exact, rel=1e-11)

@@ -43,24 +43,13 @@ SCENES = {
 @pytest.mark.parametrize("accuracy", [1e-2, 1e-4])
 @pytest.mark.parametrize("name", SCENES)
 def test_rates_and_loads_between_steps(name, accuracy):
-    duration = 4 * 2 * math.pi / SPEED
-
-    def make():
-        return prepared(SCENES[name], duration, accuracy, "rest")
-
-    run = make()
+    run, other = (prepared(SCENES[name], 4 * 2 * math.pi / SPEED, accuracy, "rest") for _ in range(2))
     scales, times = ErrorScales(run), instants(np.random.default_rng(1), run, 120)
-    truth = landed(make(), scales, times, Radau, min(1e-8, accuracy * 1e-4))
+    truth = landed(other, scales, times, Radau, min(1e-8, accuracy * 1e-4))
     method, _ = choose_method(run)
     trial, errors = choose_tolerance(run, method)
     sink = Instants(scales, times)
-    solve(
-        run,
-        method,
-        accuracy,
-        sink,
-        errors=errors,
-        **({"tolerance": trial.tolerance, "steps": trial.steps} if trial else {}),
-    )
+    given = {"tolerance": trial.tolerance, "steps": trial.steps} if trial else {}
+    solve(run, method, accuracy, sink, errors=errors, **given)
     worst = scales.errors(sink.all(), truth).max(axis=0)
     assert method == "bdf" and np.all(worst < accuracy), worst / accuracy

@@ -10,7 +10,6 @@ from scipy.optimize import fsolve
 
 from sealdyn.analysis import quasi_static
 from sealdyn.closed_form import ludwig_allen as la
-from sealdyn.closed_form import ludwig_allen as rr
 from sealdyn.dynamics.model import Model
 from sealdyn.scene.excitation import Shaft
 from sealdyn.scene.forces import Contact
@@ -71,7 +70,7 @@ def test_film_balances_force_and_both_moments(q, guide):
         load, sine, cosine = integrals(float(e[0]))
         return math.hypot(sine, cosine) / load - wanted
 
-    mean, amplitude = rr.film(q, guide, RING.group)
+    mean, amplitude = la.film(q, guide, RING.group)
     e = float(fsolve(short, [0.9 * amplitude / mean], xtol=1e-12)[0])
     assert amplitude / mean == pytest.approx(e, rel=1e-7)
     assert mean**2 == pytest.approx(integrals(e)[0] * RING.group, rel=1e-7)
@@ -80,22 +79,22 @@ def test_film_balances_force_and_both_moments(q, guide):
 @pytest.mark.core
 def test_the_range_of_films():
     """Free: from 4/pi, where the load acts at the arm R, to 16/pi^2, just where Ludwig & Allen's film begins."""
-    least, most = rr.film_range()
+    least, most = la.film_range()
     assert least == pytest.approx(4 / math.pi, rel=1e-12) and most == pytest.approx(la.LEAST_FORCE_RATIO, rel=1e-12)
     with pytest.raises(ValueError, match="hang-up"):
-        rr.film(0.999 * least, 0.0, RING.group)
+        la.film(0.999 * least, 0.0, RING.group)
     with pytest.raises(ValueError, match="straightens"):
-        rr.film(1.001 * most, 0.0, RING.group)
-    assert rr.film_range(0.8)[1] == math.inf and rr.film_range(1.0)[0] == math.inf
+        la.film(1.001 * most, 0.0, RING.group)
+    assert la.film_range(0.8)[1] == math.inf and la.film_range(1.0)[0] == math.inf
 
 
 @pytest.mark.parametrize("q", [1.7, 2.0, 5.0, 20.0])
 def test_a_support_that_carries_the_cosine_moment_gives_the_closed_form(q):
     films = la.equilibrium(q, RING.group)
     load, _, cosine = integrals(films[1] / films[0])
-    guide = rr.closed_form_guide(q)
+    guide = la.closed_form_guide(q)
     assert guide == pytest.approx(-cosine / load, rel=1e-9)
-    assert rr.film(q, guide, RING.group) == pytest.approx(films, rel=1e-9)
+    assert la.film(q, guide, RING.group) == pytest.approx(films, rel=1e-9)
     assert film_on(with_force_ratio(SCENE, q, guide))[:2] == pytest.approx(films, rel=1e-9)
 
 
@@ -106,7 +105,7 @@ def test_a_scene_gives_back_its_numbers():
     with pytest.raises(SceneError, match=r"film\.cavitation_pressure"):
         ring_of(replace(scene, film=replace(scene.film, cavitation_pressure=None)))
     with pytest.raises(SceneError, match="more than the tilt"):
-        with_force_ratio(ready_scene(RING, misalignment=1e-3), 20.0, rr.closed_form_guide(20.0))
+        with_force_ratio(ready_scene(RING, misalignment=1e-3), 20.0, la.closed_form_guide(20.0))
 
 
 # --- in time ----------------------------------------------------------------------------------------------
@@ -126,7 +125,7 @@ def test_it_leaves_the_closed_form_and_straightens():
 @pytest.mark.parametrize("factor", [0.8, 1.3])
 def test_held_by_its_support_it_returns_to_the_closed_form(factor):
     """A tilt spring with R F_s h1/h0 at the film: it attracts, from both sides."""
-    _, told = ran(3.0, rr.closed_form_guide(3.0), factor=factor)
+    _, told = ran(3.0, la.closed_form_guide(3.0), factor=factor)
     assert told.status == "film", told.message
     wanted = la.equilibrium(3.0, RING.group)
     assert (told.mean_film[0], told.amplitude[0]) == pytest.approx(wanted, rel=2e-3)
@@ -176,7 +175,7 @@ def test_inertia_does_not_change_what_becomes_of_it(mass, inertia_ratio):
     """A thousandfold mass, disk or pipe: the film's damping rules."""
     scene = ready_scene(RING, mass=mass, inertia_ratio=inertia_ratio)
     assert ran(2.0, scene=scene)[1].status == "straightened"
-    for q, guide in ((1.45, 0.0), (3.0, rr.closed_form_guide(3.0))):
+    for q, guide in ((1.45, 0.0), (3.0, la.closed_form_guide(3.0))):
         made, told = ran(q, guide, factor=1.1, scene=scene, turns=100)
         assert told.status == "film", told.message
         assert told.mean_film[0] == pytest.approx(film_on(made)[0], rel=3e-3)
@@ -189,7 +188,7 @@ def test_speed_scales_the_film_and_nothing_else(speed):
     ring = replace(RING, shaft_speed=speed, group=RING.group * speed / RING.shaft_speed)
     assert ring.spring_force == pytest.approx(RING.spring_force, rel=1e-12)
     scene = ready_scene(ring, misalignment=5e-3)
-    _, told = ran(3.0, rr.closed_form_guide(3.0), factor=1.2, scene=scene)
+    _, told = ran(3.0, la.closed_form_guide(3.0), factor=1.2, scene=scene)
     assert told.status == "film", told.message
     was = la.equilibrium(3.0, RING.group)[0]
     assert told.mean_film[0] == pytest.approx(was * math.sqrt(speed / RING.shaft_speed), rel=3e-3)
@@ -198,7 +197,7 @@ def test_speed_scales_the_film_and_nothing_else(speed):
 @pytest.mark.slow
 def test_two_methods_agree_and_the_energy_is_accounted_for():
     """Two methods, ten times the accuracy apart, on the way to the film."""
-    made = started(with_force_ratio(SCENE, 2.0, rr.closed_form_guide(2.0)), factor=1.3)
+    made = started(with_force_ratio(SCENE, 2.0, la.closed_form_guide(2.0)), factor=1.3)
     one, other = (released(made, 10, accuracy=a, method=m) for a, m in ((1e-3, "bdf"), (1e-4, "ida")))
     assert np.max(np.abs(one.h0 - other.h0)) < 2e-3 * 1.3 * la.equilibrium(2.0, RING.group)[0]
     assert max(one.energy_residual, other.energy_residual) < 1e-4

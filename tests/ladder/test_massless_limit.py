@@ -124,11 +124,3 @@ def test_forces_that_do_not_tell_a_rate_fail_the_run(tmp_path):
     scenario = read_scenario(SCENARIOS / "massless_ring.toml", ["shaft.speed=1e-24", "run.turns=0.5"])
     found = simulate(scenario, tmp_path / "x.h5")
     assert found.status == "failed" and "how fast a ring without mass moves" in found.message
-
-
-def test_a_mass_of_a_motion_that_is_no_unknown_may_be_nothing(tmp_path):
-    """Tilts in a linear film ask for the inertia only."""
-    found = simulate(
-        read_scenario(SCENARIOS / "free_precession.toml", ["rotor.mass=0", "run.turns=0.5"]), tmp_path / "x.h5"
-    )
-    assert found.status == "ok" and found.summary["energy_residual"] < 1e-9

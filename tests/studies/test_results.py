@@ -179,6 +179,8 @@ def test_a_failed_point_is_kept_with_its_reason(tmp_path):
     for _ in range(2):
         answer = swept(tmp_path / "a.h5", "film.coning=3,-9 mrad", tmp_path / "kept")
         assert "[film] coning" in answer["rows"][1]["failed"]
+        # The verdict says so too, once.
+        assert answer["message"].count(answer["rows"][1]["failed"]) == 1
     assert len(list((tmp_path / "kept").iterdir())) == 2
 
 

@@ -25,14 +25,6 @@ def study(folder, scenario, **flags):
     return run_study("runup", scenario, folder / "r.h5", flags=flags, workers=1)
 
 
-def no_nan(tree):
-    if isinstance(tree, dict):
-        return all(map(no_nan, tree.values()))
-    if isinstance(tree, list | tuple):
-        return all(map(no_nan, tree))
-    return not isinstance(tree, float) or math.isfinite(tree)
-
-
 @pytest.fixture(scope="module")
 def linear(tmp_path_factory):
     folder = tmp_path_factory.mktemp("runup")
@@ -70,8 +62,7 @@ def test_resolution_is_stated_and_right(linear):
 
 def test_answer_is_plain_and_drawn_from_the_archive_alone(linear):
     folder, answer = linear
-    assert no_nan(json.loads(json.dumps(answer)))
-    assert len(json.dumps(answer)) < 400_000
+    assert len(json.dumps(answer, allow_nan=False)) < 400_000
     assert read_study(folder / "r.h5")["answer"]["rows"] == json.loads(json.dumps(answer["rows"]))
     figure = drawn(study_runup, folder / "r.h5", folder / "r.png")
     order, growth = panel(figure, "Relative tilt"), panel(figure, "Free whirl")
@@ -212,7 +203,7 @@ def test_pressure_ramps_and_a_step(tmp_path):
         assert row["overshoot"]["h_min"] < 1e-3
         assert row["settled"]["end"]["leakage"] == pytest.approx(slow["leakage"][-1], rel=0.05)
         assert row["settled"]["begin"]["leakage"] == pytest.approx(slow["leakage"][0], rel=0.01)
-    assert no_nan(json.loads(json.dumps(answer)))
+    json.dumps(answer, allow_nan=False)
     figure = drawn(study_runup, tmp_path / "r.h5", tmp_path / "r.png")
     ramps = [row for row in answer["rows"] if row["rate"]]
     films = [1e6 * row["h_min"] for row in ramps]

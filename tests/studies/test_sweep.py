@@ -125,15 +125,6 @@ def test_critical_and_resonance_speeds_are_found_where_they_are_asked_for(tmp_pa
         sweep(tmp_path, "rotor.runout=10,20 urad", "stability.critical_sped")
 
 
-def test_a_point_that_cannot_be_is_a_row_with_its_reason(tmp_path):
-    answer = sweep(tmp_path, "film.coning=3,-9 mrad", "h_min.value")
-    good, bad = answer["rows"]
-    assert good["h_min.value"] > 0 and "failed" not in good
-    assert bad["film.coning"] == -9 and "[film] coning" in bad["failed"]
-    # The verdict says so too, once.
-    assert answer["message"].count(bad["failed"]) == 1
-
-
 def test_an_unknown_key_or_output_is_named(tmp_path):
     for vary, key in (("rotor.runuot=1,2", "runuot"), ([], "vary")):
         with pytest.raises(ScenarioError) as refused:
