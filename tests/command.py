@@ -74,6 +74,11 @@ def finished(process, timeout=120) -> Answer:
     return Answer(process.returncode, out, err)
 
 
+def said(err: str) -> list[str]:
+    """Lines of standard error, but for what a slow machine is told besides."""
+    return [line for line in err.strip().splitlines() if not line.startswith(("compiling kernels", "making ready"))]
+
+
 def until(happened, process, timeout=60):
     """Wait until `happened()`; the process must not end before."""
     limit = time.monotonic() + timeout

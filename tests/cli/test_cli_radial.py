@@ -5,7 +5,7 @@ import re
 
 import numpy as np
 import pytest
-from command import SCENARIOS, sealdyn
+from command import SCENARIOS, said, sealdyn
 from PIL import Image
 
 import sealdyn as package
@@ -104,10 +104,10 @@ def test_show_plot_and_what_is_of_face_seals(folder):
     assert sealdyn("plot", "x.h5", "--out", "y.png", cwd=place).code == 0
     assert Image.open(place / "y.png").size[0] > 1000
     refused = sealdyn("plot", "x.h5", "--kind", "orbit", cwd=place)
-    assert refused.code == 2 and "radial seal" in refused.err and len(refused.err.splitlines()) == 1, refused.err
+    assert refused.code == 2 and "radial seal" in refused.err and len(said(refused.err)) == 1, refused.err
     for study, path, words in (("campbell", LIP, "followability"), ("followability", SCENARIOS / "rub.toml", "[lip]")):
         refused = sealdyn("study", study, path, cwd=place)
-        assert refused.code == 2 and words in refused.err and len(refused.err.splitlines()) == 1, refused.err
+        assert refused.code == 2 and words in refused.err and len(said(refused.err)) == 1, refused.err
 
 
 def test_a_face_seal_is_not_compared_with_a_radial_one(folder, tmp_path):
