@@ -169,7 +169,7 @@ def test_an_exhibit_that_breaks_is_a_row_with_its_reason(tmp_path, monkeypatch):
     def broken():
         raise ValueError("broken on purpose")
 
-    monkeypatch.setitem(EXHIBITS, "touch_between_steps", (3, broken, lambda scene, run: ""))
+    monkeypatch.setitem(EXHIBITS, "touch_between_steps", (3, (broken,), lambda scene, run: ""))
     out = tmp_path / "failures.h5"
     answer = run_study("failures", sealdyn.read_scenario(SCENARIO), out, flags={"items": 3}, workers=1)
     assert answer["status"] == "failed" and "broken on purpose" in answer["rows"][0]["failed"]

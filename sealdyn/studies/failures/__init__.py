@@ -60,7 +60,7 @@ def run(scenario, settings, tools) -> Answer:
 
 
 def exhibits() -> dict[str, tuple]:
-    """{name: (item, show, meets)} of the exhibits there are, by their items."""
+    """{name: (item, shows, meets)} of the exhibits there are, by their items."""
     found = {}
     for file in pkgutil.iter_modules(cases.__path__):
         found |= importlib.import_module(f"{cases.__name__}.{file.name}").EXHIBITS
@@ -79,8 +79,8 @@ def place_of(name: str) -> str:
 
 def shown(point: dict) -> dict:
     """The rows of one exhibit."""
-    _, show, _ = exhibits()[point["exhibit"]]
-    return {"rows": show()}
+    _, shows, _ = exhibits()[point["exhibit"]]
+    return {"rows": [row for show in shows for row in show()]}
 
 
 def chosen_for(scenario, names) -> tuple[dict, dict[str, str]]:

@@ -1,12 +1,12 @@
 """Exhibits: files by subject, of places where a method fails, shown in the order of their items.
 
-What every file offers (the contract): `EXHIBITS` {name: (item, show, meets)}:
+What every file offers (the contract): `EXHIBITS` {name: (item, shows, meets)}:
 
 `item`       int; exhibits of one number belong to one place where methods fail.
-`show()`     list of rows, made by running the failing method and the survivor on a small scene of the reference seal
-             (Green, 1989); at most some seconds.  A row is a dict: `item`, `title`, `failing` and `survivor` (what each
-             is), `failing_error` and `survivor_error` (numbers in `unit`; None: no answer at all), `unit`, and
-             `default`, a sentence on what the program does by itself.
+`shows`      functions without arguments, each of a list of rows, made by running the failing method and the survivor on
+             a small scene of the reference seal (Green, 1989); at most some seconds.  A row is a dict: `item`, `title`,
+             `failing` and `survivor` (what each is), `failing_error` and `survivor_error` (numbers in `unit`; None: no
+             answer at all), `unit`, and `default`, a sentence on what the program does by itself.
 `meets(scene, run)`  what of a scene and its run (RunState, made ready) leads to this place, in words, or empty.
 
 An exhibit may use a bare library method: the naive use of it is what fails.
@@ -37,18 +37,12 @@ def cruise_dam(**faces) -> Film:
     )
 
 
-def row(item: int, title: str, failing: tuple, survivor: tuple, unit: str, default: str) -> dict:
-    """A row from (what it is, number or None) of the failing method and of the survivor."""
-    return {
-        "item": item,
-        "title": title,
-        "failing": failing[0],
-        "failing_error": None if failing[1] is None else float(failing[1]),
-        "survivor": survivor[0],
-        "survivor_error": None if survivor[1] is None else float(survivor[1]),
-        "unit": unit,
-        "default": default,
-    }
+def row(item: int, title: str, failing: tuple, survivor: tuple, unit: str, default: str) -> list[dict]:
+    """One row, in a list, from (what it is, number or None) of the failing method and of the survivor."""
+    found = {"item": item, "title": title}
+    for name, (words, error) in (("failing", failing), ("survivor", survivor)):
+        found |= {name: words, f"{name}_error": None if error is None else float(error)}
+    return [found | {"unit": unit, "default": default}]
 
 
 def run_from(scene, duration: float, accuracy: float, **start) -> RunState:

@@ -34,7 +34,7 @@ from .integration import lightened
 BELOW = -2e-6
 
 
-def closed_start() -> dict:
+def closed_start() -> list[dict]:
     """A start 2 um beyond the other face: a film taken at its mean thickness has no pole there."""
     scene = reference_scene("FMR")
     film, support = replace(scene.film, model="radial"), scene.rotor.support
@@ -60,7 +60,7 @@ def closed_start() -> dict:
     )  # fmt: skip
 
 
-def no_equilibrium() -> dict:
+def no_equilibrium() -> list[dict]:
     """Closing force above what the converging film can ever carry: Newton on the clearance goes below zero."""
     scene = reference_scene("FMR")
     film = replace(scene.film, model="radial", clearance=None)
@@ -92,7 +92,7 @@ def no_equilibrium() -> dict:
     )  # fmt: skip
 
 
-def contradicting_rates() -> dict:
+def contradicting_rates() -> list[dict]:
     """A massless ring begun with rates of zero, and with the rates that its film's equation asks for."""
     run = run_from(lightened(0.0), 0.01, 1e-6)
     segment, sizes = run.segment(0), []
@@ -107,7 +107,7 @@ def contradicting_rates() -> dict:
     )  # fmt: skip
 
 
-def unsettled_pressures() -> dict:
+def unsettled_pressures() -> list[dict]:
     """A gas film that stores, begun with the low pressure everywhere, and with the pressures of its steady flow."""
     film = Film(
         inner_radius=0.032, outer_radius=0.040, inner_pressure=1e5, outer_pressure=6e5, clearance=5e-6, coning=2e-4,
@@ -148,11 +148,6 @@ def meets_inconsistent_start(scene, run) -> str:
     return "[initial] gives a start of its own" if scene.initial.given else ""
 
 
-def show_inconsistent_start() -> list[dict]:
-    """All four."""
-    return [closed_start(), no_equilibrium(), contradicting_rates(), unsettled_pressures()]
-
-
 # --- several answers ---
 # Several answers: a diverging film with rough faces has a clearance that touches and one that does not hold, a gas dam
 # that hardly narrows two that hold, a wavy ring that bends three wavinesses.
@@ -188,7 +183,7 @@ def _excess(model, clearance) -> float:
     return model.interface.opening_force(clearance, *pressures) / model.closing_force() - 1
 
 
-def one_that_holds() -> dict:
+def one_that_holds() -> list[dict]:
     """Newton from the design clearance finds one answer, the search over all clearances every one."""
     model = Model(diverging())
     roots = model.interface.equilibria
@@ -204,7 +199,7 @@ def one_that_holds() -> dict:
     )  # fmt: skip
 
 
-def another_that_holds() -> dict:
+def another_that_holds() -> list[dict]:
     """Newton finds the wide clearance and knows nothing of the narrow one, where a landing ring may come to stay."""
     model = Model(two_that_hold())
     roots = model.interface.equilibria
@@ -220,7 +215,7 @@ def another_that_holds() -> dict:
     )  # fmt: skip
 
 
-def three_wavinesses() -> dict:
+def three_wavinesses() -> list[dict]:
     """Lebeck's elastic ring of 35 half heights: a search finds the waviness that is left under load where it looks,
     and knows of no other; the middle one of three does not hold."""
     ring = ElasticRing(bending_stiffness=77.0, torsion_ratio=6.0, radius=47.54e-3)
@@ -249,11 +244,6 @@ def meets_several_answers(scene, run) -> str:
         return "[stator.elastic]: a ring that its load bends may have several wavinesses"
     found = len(run.model.interface.equilibria)
     return f"{found} clearances at which film and closing force balance" if found > 1 else ""
-
-
-def show_several_answers() -> list[dict]:
-    """Clearances, and wavinesses."""
-    return [one_that_holds(), another_that_holds(), three_wavinesses()]
 
 
 # --- linear theory ---
@@ -320,19 +310,18 @@ def show_linear_theory() -> list[dict]:
     run.extrema.windows[1] = [run.duration - orbit.period, run.duration]
     integrated(run, "adams", ACCURACY)
     in_time = run.extrema.records[1, 0] / run.model.clearance
-    return [
-        row(
-            12, "Linear theory at large tilt",
-            (f"linear film: touch at {in_words('tilt', touching, digits=3)}", abs(found - linear_gap(touching))),
-            (f"radial film: open, and {still:.2g} C left at 1.2 times that", abs(in_time - found)),
-            "smallest film, of clearance",
-            'takes the radial film (film.model = "auto") unless the tilt is small enough for the linear one',
-        )
-    ]  # fmt: skip
+    return row(
+        12, "Linear theory at large tilt",
+        (f"linear film: touch at {in_words('tilt', touching, digits=3)}", abs(found - linear_gap(touching))),
+        (f"radial film: open, and {still:.2g} C left at 1.2 times that", abs(in_time - found)),
+        "smallest film, of clearance",
+        'takes the radial film (film.model = "auto") unless the tilt is small enough for the linear one',
+    )  # fmt: skip
 
 
 EXHIBITS = {
-    "inconsistent_start": (7, show_inconsistent_start, meets_inconsistent_start),
-    "several_answers": (11, show_several_answers, meets_several_answers),
-    "linear_theory": (12, show_linear_theory, meets_linear_theory),
-}
+    "inconsistent_start": (7, (closed_start, no_equilibrium, contradicting_rates, unsettled_pressures),
+                           meets_inconsistent_start),
+    "several_answers": (11, (one_that_holds, another_that_holds, three_wavinesses), meets_several_answers),
+    "linear_theory": (12, (show_linear_theory,), meets_linear_theory),
+}  # fmt: skip

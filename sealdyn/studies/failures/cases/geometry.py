@@ -78,7 +78,7 @@ def squeeze_by_logarithms(inner_radius, width, clearance, ratio, log):
     return width**3 / clearance**3 * total / (inner_radius + width / 2)
 
 
-def flat_faces() -> dict:
+def flat_faces() -> list[dict]:
     """Axial damping of a strip coned by a nanometre: logarithms in floating point, in sixty digits, radial film."""
     film = replace(reference_scene("FMR").film, model="radial", geometry="planar")
     width, h = film.outer_radius - film.inner_radius, film.clearance
@@ -162,14 +162,11 @@ def zero_tilt() -> list[dict]:
     apart = abs(complex(*rest.y[place : place + 2]) - complex(*at_end[:2])) / scale
     default = "integrates the two tilts about fixed axes, which do not know of the nutation"
     error = abs(nutation - exact) / scale
-    return [
-        row(5, "Zero tilt passed", ("Euler angles, 1 urad off zero tilt", error if np.isfinite(error) else None),
-            ("tilts about fixed axes", sound), "tilt, of clearance / radius", default),
-        row(5, "Start at zero tilt",
-            (f"Euler angles: 0/0 after {stopped.nfev} evaluations", None if stopped.status < 0 else 0.0),
-            ("tilts about fixed axes", apart), "tilt, of clearance / radius",
-            default),
-    ]  # fmt: skip
+    passed = row(5, "Zero tilt passed", ("Euler angles, 1 urad off zero tilt", error if np.isfinite(error) else None),
+                 ("tilts about fixed axes", sound), "tilt, of clearance / radius", default)  # fmt: skip
+    ended = f"Euler angles: 0/0 after {stopped.nfev} evaluations", None if stopped.status < 0 else 0.0
+    return passed + row(5, "Start at zero tilt", ended, ("tilts about fixed axes", apart),
+                        "tilt, of clearance / radius", default)  # fmt: skip
 
 
 def meets_degenerate_geometry(scene, run) -> str:
@@ -182,11 +179,6 @@ def meets_degenerate_geometry(scene, run) -> str:
         return "its faces are parallel"
     share = in_words("share", apart, digits=2)
     return f"its film is {share} of the clearance thicker at one edge than at the other" if apart < FLAT else ""
-
-
-def show_degenerate_geometry() -> list[dict]:
-    """Both."""
-    return [flat_faces(), *zero_tilt()]
 
 
 # --- fronts ---
@@ -220,7 +212,7 @@ def by_trapezoid(angles: int) -> float:
     return total * 2 * math.pi / angles
 
 
-def cavitation() -> dict:
+def cavitation() -> list[dict]:
     """Error of the film force; the reference is the trapezoid of 200 000 angles, extrapolated."""
     coarse, fine = by_trapezoid(2**16), by_trapezoid(2**17)
     exact = fine + (fine - coarse) / 3
@@ -259,7 +251,7 @@ def moment_of_sectors(count: int) -> float:
     return total * 2 * math.pi * middle / count
 
 
-def choking() -> dict:
+def choking() -> list[dict]:
     """Error of the film's moment; the reference has 8192 sectors, where the error falls with their cube."""
     _, f, s = tilted_dam()
     gas_dam.wrench(f, s)
@@ -279,11 +271,6 @@ def meets_fronts(scene, run) -> str:
         return "its gas is as fast as sound on a part of the circle" if low < 1.0 <= high else ""
     floored = scene.film.cavitation_pressure is not None and run.model.unknowns.film_unknowns is None
     return "film.cavitation_pressure: where the film tears its force has a kink" if floored else ""
-
-
-def show_fronts() -> list[dict]:
-    """Both fronts."""
-    return [cavitation(), choking()]
 
 
 # --- long runs ---
@@ -332,11 +319,9 @@ def phases() -> list[dict]:
         added = abs(complex(math.cos(summed), math.sin(summed)) - exact)
     default = f"sets the clock anew every {LONGEST} turns and reduces each phase in exact arithmetic"
     survivor = "clock set anew, exact reduction", kept
-    return [
-        row(10, "Phase after 1e6 turns", ("cos(w t) in floats", product), survivor, "rad", default),
-        row(10, "Angle added step by step", (f"{STEPS_PER_TURN} float steps a turn", added), survivor, "rad",
-            default),
-    ]  # fmt: skip
+    phase = row(10, "Phase after 1e6 turns", ("cos(w t) in floats", product), survivor, "rad", default)
+    steps = f"{STEPS_PER_TURN} float steps a turn", added
+    return phase + row(10, "Angle added step by step", steps, survivor, "rad", default)
 
 
 def apparent(per_turn: int) -> float:
@@ -353,7 +338,7 @@ def warns(per_turn: int) -> bool:
     return any(caution.concern == Concern.ALIASING for caution in run.cautions)
 
 
-def aliasing() -> dict:
+def aliasing() -> list[dict]:
     """5.4 kHz on a 16 Hz shaft at 36 samples a turn, and at what the warning asks for."""
     enough = math.ceil(2 * TONE / SHAFT) + 1
     folded, right = apparent(SAMPLES), apparent(enough)
@@ -373,13 +358,8 @@ def meets_long_runs(scene, run) -> str:
     return f"{turns:.3g} turns of the shaft" if turns > MANY else ""
 
 
-def show_long_runs() -> list[dict]:
-    """All three."""
-    return [*phases(), aliasing()]
-
-
 EXHIBITS = {
-    "degenerate_geometry": (5, show_degenerate_geometry, meets_degenerate_geometry),
-    "fronts": (8, show_fronts, meets_fronts),
-    "long_runs": (10, show_long_runs, meets_long_runs),
+    "degenerate_geometry": (5, (flat_faces, zero_tilt), meets_degenerate_geometry),
+    "fronts": (8, (cavitation, choking), meets_fronts),
+    "long_runs": (10, (phases, aliasing), meets_long_runs),
 }

@@ -83,10 +83,8 @@ def show_neutral_stability() -> list[dict]:
     kept = "matrix exponential keeps the circle", abs(rates["expm"])
     default = "tightens the accuracy until the method's own damping cannot decide, and asks the eigenvalues as well"
     words = "growth per turn"
-    return [
-        row(1, "Neutral stability: BDF", named("bdf", "BDF, tolerance 1e-5,"), kept, words, default),
-        row(1, "Neutral stability: Adams", named("adams", "Adams, tolerance 1e-5,"), kept, words, default),
-    ]
+    damps = row(1, "Neutral stability: BDF", named("bdf", "BDF, tolerance 1e-5,"), kept, words, default)
+    return damps + row(1, "Neutral stability: Adams", named("adams", "Adams, tolerance 1e-5,"), kept, words, default)
 
 
 # --- stiff squeeze ---
@@ -123,13 +121,11 @@ def show_stiff_squeeze() -> list[dict]:
     if outcome.status != Status.OK:
         raise RuntimeError(outcome.message)
     left = math.floor(math.log10(run.duration / reached))
-    return [
-        row(
-            2, "Stiff squeeze film", (f"DOP853 crawls: 1e-{left} of the run done", counts.rhs / reached),
-            ("BDF runs to the end", outcome.counts.rhs / run.duration), "right-hand sides per second of motion",
-            f'looks at the fastest decay where the run starts and takes "{choose_method(run)[0]}" by itself',
-        )
-    ]  # fmt: skip
+    return row(
+        2, "Stiff squeeze film", (f"DOP853 crawls: 1e-{left} of the run done", counts.rhs / reached),
+        ("BDF runs to the end", outcome.counts.rhs / run.duration), "right-hand sides per second of motion",
+        f'looks at the fastest decay where the run starts and takes "{choose_method(run)[0]}" by itself',
+    )  # fmt: skip
 
 
 # --- touch between steps ---
@@ -186,16 +182,11 @@ def meets_touch_between_steps(scene, run) -> str:
 def show_touch_between_steps() -> list[dict]:
     """Dips missed by CVODE's root search and by the search on every step's own polynomial."""
     scene = reference_scene("FMS")
-    return [
-        row(
-            3,
-            "Touch between steps",
-            ("CVODE Adams' root search, 1e-4", TOUCH_TURNS - bare_root_search(scene)),
-            ("gap searched on each step's polynomial", TOUCH_TURNS - by_the_watch(scene)),
-            f"dips missed of {TOUCH_TURNS}",
-            "bounds the gap over every step from its two ends and searches wherever it may close",
-        )
-    ]
+    return row(
+        3, "Touch between steps", ("CVODE Adams' root search, 1e-4", TOUCH_TURNS - bare_root_search(scene)),
+        ("gap searched on each step's polynomial", TOUCH_TURNS - by_the_watch(scene)), f"dips missed of {TOUCH_TURNS}",
+        "bounds the gap over every step from its two ends and searches wherever it may close",
+    )  # fmt: skip
 
 
 # --- coulomb friction ---
@@ -233,13 +224,11 @@ def show_coulomb_friction() -> list[dict]:
     """Error of the resting place after twelve periods."""
     smooth, calls = off_rest(SecondarySeal(radius=0.045, friction_force=FRICTION, law="regularised", width=WIDTH))
     real, fewer = off_rest(SecondarySeal(radius=0.045, friction_force=FRICTION))
-    return [
-        row(
-            4, "Coulomb friction", (f"sign smoothed over 0.1 mm/s creeps ({calls} right-hand sides)", smooth),
-            (f"real sticking stands ({fewer})", real), "resting place, of clearance",
-            'sticks at exactly zero speed and slips when the load exceeds friction (law = "coulomb")',
-        )
-    ]  # fmt: skip
+    return row(
+        4, "Coulomb friction", (f"sign smoothed over 0.1 mm/s creeps ({calls} right-hand sides)", smooth),
+        (f"real sticking stands ({fewer})", real), "resting place, of clearance",
+        'sticks at exactly zero speed and slips when the load exceeds friction (law = "coulomb")',
+    )  # fmt: skip
 
 
 # --- vanishing inertia ---
@@ -300,10 +289,10 @@ def show_vanishing_inertia() -> list[dict]:
     by_cvode, by_ida = without_mass()
     default = "drops the rates of a ring without inertia and takes IDA on the residual form"
     return [
-        row(6, "Vanishing inertia", (f"CVODE Adams, {LIGHT:.0e} of the mass", calls(LIGHT, "adams", VANISHING_BUDGET)),
-            ("IDA, no mass at all", calls(0.0, "ida")), "right-hand sides per turn", default),
-        row(6, "No inertia", ("CVODE at m = 0 writes no rates: stands still, says done", by_cvode),
-            (f"IDA at m = 0 against {LIGHT:.0e} of the mass", by_ida), "tilt, of clearance / radius", default),
+        *row(6, "Vanishing inertia", (f"CVODE Adams, {LIGHT:.0e} of the mass", calls(LIGHT, "adams", VANISHING_BUDGET)),
+             ("IDA, no mass at all", calls(0.0, "ida")), "right-hand sides per turn", default),
+        *row(6, "No inertia", ("CVODE at m = 0 writes no rates: stands still, says done", by_cvode),
+             (f"IDA at m = 0 against {LIGHT:.0e} of the mass", by_ida), "tilt, of clearance / radius", default),
     ]  # fmt: skip
 
 
@@ -357,23 +346,19 @@ def show_chaos() -> list[dict]:
     spread = np.std(other)
     apart = np.abs(one[: len(other)] - other[: len(one)])[-50:].max() / spread
     averages = abs(film.mean() - film_other.mean()) / film_other.std()
-    return [
-        row(
-            9,
-            "Chaos",
-            ("single runs, accuracies 1e-5 and 1e-7", apart),
-            (f"their mean film over {CHAOS_TURNS - SETTLED} turns", averages),
-            "apart, in standard deviations of the motion",
-            "measures the exponent in study rub, says where forecasts end, and compares averages beyond",
-        )
-    ]
+    return row(
+        9, "Chaos", ("single runs, accuracies 1e-5 and 1e-7", apart),
+        (f"their mean film over {CHAOS_TURNS - SETTLED} turns", averages),
+        "apart, in standard deviations of the motion",
+        "measures the exponent in study rub, says where forecasts end, and compares averages beyond",
+    )  # fmt: skip
 
 
 EXHIBITS = {
-    "neutral_stability": (1, show_neutral_stability, meets_neutral_stability),
-    "stiff_squeeze": (2, show_stiff_squeeze, meets_stiff_squeeze),
-    "touch_between_steps": (3, show_touch_between_steps, meets_touch_between_steps),
-    "coulomb_friction": (4, show_coulomb_friction, meets_coulomb_friction),
-    "vanishing_inertia": (6, show_vanishing_inertia, meets_vanishing_inertia),
-    "chaos": (9, show_chaos, meets_chaos),
+    "neutral_stability": (1, (show_neutral_stability,), meets_neutral_stability),
+    "stiff_squeeze": (2, (show_stiff_squeeze,), meets_stiff_squeeze),
+    "touch_between_steps": (3, (show_touch_between_steps,), meets_touch_between_steps),
+    "coulomb_friction": (4, (show_coulomb_friction,), meets_coulomb_friction),
+    "vanishing_inertia": (6, (show_vanishing_inertia,), meets_vanishing_inertia),
+    "chaos": (9, (show_chaos,), meets_chaos),
 }
