@@ -4,8 +4,8 @@
 class InProcess:
     """Evaluates points here, one after the other; one that fails is a row with its reason."""
 
-    def map(self, function, points, what="points"):
-        return [self.one(function, point) for point in points]
+    def map(self, function, points, what="points", keep=()):
+        return [{name: point[name] for name in keep} | self.one(function, point) for point in points]
 
     def one(self, function, point):
         try:

@@ -8,10 +8,11 @@ What every study module offers (the contract):
 `INFO`      an `Info`.
 `run(scenario, settings, tools) -> Answer`
             (answers.py): numbers with the keys of `study --json`, what was found in one sentence, tables, panels.
-            `tools.map(function, points, what)` evaluates a module-level function of one JSON-able point on all
+            `tools.map(function, points, what, keep)` evaluates a module-level function of one JSON-able point on all
             cores or on other machines, remembers finished points across interruptions, and returns a list of rows: the
-            function's dict, or `{"failed": reason}`.  A row hangs on nothing but the function, what it is bound to (a
-            scenario, a scene), and the point: whoever asks the same again may get it from a folder of results.
+            function's dict, or `{"failed": reason}`, behind what the point has of the names `keep`.  A row hangs on
+            nothing but the function, what it is bound to (a scenario, a scene), and the point: whoever asks the same
+            again may get it from a folder of results.
             `tools.alone()` does so one point after the other, here, for rows that measure time.
             `tools.say(fraction)` reports progress of anything else, `tools.tell(words)` says a line before a long wait.
 

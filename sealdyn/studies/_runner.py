@@ -93,8 +93,9 @@ class StudyContext:
     failures: list[str] = field(default_factory=list)
     name: str = ""
 
-    def map(self, function, points: list, what: str = "points") -> list[dict]:
-        """Rows of `function(point)` for JSON-able points, in their order; `{"failed": reason}` for one that failed."""
+    def map(self, function, points: list, what: str = "points", keep: tuple[str, ...] = ()) -> list[dict]:
+        """Rows of `function(point)` for JSON-able points, in their order, `{"failed": reason}` for one that failed; in
+        front of each what its point has of the names `keep`."""
         if not points:
             return []
         store, begun, kept = self.results or self.journal, monotonic(), []
@@ -109,7 +110,7 @@ class StudyContext:
 
         rows = evaluate(function, points, store, self.crew, say, what)
         self.failures += [row["failed"] for row in rows if "failed" in row]
-        return rows
+        return [{name: point[name] for name in keep} | row for point, row in zip(points, rows, strict=True)]
 
     def tell(self, words: str):
         """A line before a long wait, for those who watch the progress."""

@@ -129,21 +129,22 @@ def over_grooves(scene, tools) -> dict:
     }  # fmt: skip
 
 
-def growth(scene, point: dict) -> dict:
-    """Growth rate of a small disturbance at one speed, by eigenvalues and in the time domain."""
-    return growth_rate(scene, point["speed"], point["turns"], point["method"], point["accuracy"])
+def at_point(function, scene, point: dict) -> dict:
+    """The row of a function of a scene whose other arguments a point names."""
+    return function(scene, **point)
 
 
 def in_time(scene, model, eigenvalue, how, tools, pace) -> dict:
     """Bracketing of the threshold by growth and decay; without a threshold, decay at a few speeds."""
     fastest, found = FASTEST / scene.film.outer_radius, {"value": None, "uncertainty": None}
+    growth = partial(at_point, growth_rate, scene)
     if eigenvalue is None:
         tried = [factor * min(pace, fastest / 10.0) for factor in TRIED]
         # Slow shafts on stiff films: nothing here is as close to its threshold as Adams' small damping would matter.
         if how["method"] == "adams":
             how = {**how, "method": choose_method(RunState(free_model(scene, tried[0]), 1.0))[0]}
         speeds = _within_held(model, tried)
-        rows = tools.map(partial(growth, scene), [{**how, "speed": w} for w in speeds], "growth")
+        rows = tools.map(growth, [{**how, "speed": w} for w in speeds], "growth")
         signs = {row["rate"] > 0 for row in rows if "failed" not in row and row["decided"]}
         said = "a disturbance grows at some of the speeds tried"
         if len(signs) == 1:
@@ -162,7 +163,7 @@ def in_time(scene, model, eigenvalue, how, tools, pace) -> dict:
         found["reason"] = f"not run, {edge} at the outer radius are of no seal"
         rows = [{"eigenvalue": linear_growth(free_model(scene, w))} for w in speeds]
         return {"time_domain": found, "growth": columns(rows, speeds)}
-    rows = tools.map(partial(growth, scene), [{**how, "speed": w} for w in speeds], "growth")
+    rows = tools.map(growth, [{**how, "speed": w} for w in speeds], "growth")
     around = between(rows, speeds)
     if around is None:
         found["reason"] = _unmeasured(rows) or "growth does not change sign within 5 % of the eigenvalues' threshold"
@@ -170,7 +171,7 @@ def in_time(scene, model, eigenvalue, how, tools, pace) -> dict:
     # Two more on either side of where the line between them crosses zero: a bracket of a few hundred-thousandths.
     crossing, _ = line_crossing(*around)
     near = [crossing * (1 - NARROW), crossing * (1 + NARROW)]
-    closer = tools.map(partial(growth, scene), [{**how, "speed": w} for w in near], "growth")
+    closer = tools.map(growth, [{**how, "speed": w} for w in near], "growth")
     last = between(closer, near) or around
     value, uncertainty = line_crossing(*last)
     order = np.argsort([*speeds, *near])
@@ -221,16 +222,6 @@ def columns(rows, speeds) -> dict:
 # --- beyond linear ------------------------------------------------------------------------------------
 
 
-def tipping(scene, point: dict) -> dict:
-    """The disturbance that tips the seal at one speed, and the whirl it passes on the way."""
-    return tipping_disturbance(scene, point["speed"], point["parting"])
-
-
-def fate(scene, point: dict) -> dict:
-    """What becomes of a small or large whirl at one speed."""
-    return bounded_or_not(scene, point["speed"], point["start"], point["shape"], point["frequency"])
-
-
 def beyond(model, scene, threshold, settings, tools) -> dict | None:
     """Family of whirls from the threshold to contact, tipping disturbances, and runs up and down in speed."""
     if not settings.beyond:
@@ -259,8 +250,8 @@ def beyond(model, scene, threshold, settings, tools) -> dict | None:
     below = [threshold - (threshold - low) * x for x in inner] if low < 0.9995 * threshold else []
     near = [min(family, key=lambda whirl: abs(whirl.speed - w)) for w in below]
     points = [{"speed": w, "parting": whirl.growth} for w, whirl in zip(below, near, strict=True)]
-    rows = tools.map(partial(tipping, scene), points, "tipping")
-    found["tipping"] = [compared({"speed": w, **row}, family, False) for w, row in zip(below, rows, strict=True)]
+    rows = tools.map(partial(at_point, tipping_disturbance, scene), points, "tipping", ("speed",))
+    found["tipping"] = [compared(row, family, False) for row in rows]
     above = [threshold + (high - threshold) * x for x in inner] if high > 1.0005 * threshold else []
     outside = [min(low - 0.005 * threshold, 0.998 * threshold), max(high + 0.005 * threshold, 1.002 * threshold)]
     points = []
@@ -268,11 +259,8 @@ def beyond(model, scene, threshold, settings, tools) -> dict | None:
         points += [{"speed": w, "start": "small", "shape": None, "frequency": None},
                    {"speed": w, "start": "large", "shape": (0.97 * family[-1].q).tolist(),
                     "frequency": family[-1].frequency}]  # fmt: skip
-    rows = tools.map(partial(fate, scene), points, "fate")
-    found["directions"] = [
-        compared({"speed": p["speed"], "start": p["start"], **row}, family, True)
-        for p, row in zip(points, rows, strict=True)
-    ]
+    rows = tools.map(partial(at_point, bounded_or_not, scene), points, "fate", ("speed", "start"))
+    found["directions"] = [compared(row, family, True) for row in rows]
     return {"verdict": whirl_verdict(found), **found}
 
 

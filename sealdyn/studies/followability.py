@@ -73,7 +73,7 @@ def run(scenario, settings, tools) -> Answer:
         for k in range(len(scenes))
         for speed in np.interp(np.linspace(0.1, 0.9, settings.runs), np.linspace(0, 1, len(speeds)), np.sort(speeds))
     ]
-    rows = tools.map(partial(confirmed, scenes), points, "runs")
+    rows = tools.map(partial(confirmed, scenes), points, "runs", ("curve", "speed"))
     numbers = {
         "names": names,
         "speed": own,
@@ -82,7 +82,7 @@ def run(scenario, settings, tools) -> Answer:
         "most": MOST * scenario.scene.shaft.radius,
         "curves": [{"name": name, "speed": speeds.tolist(), "eccentricity": line} for name, line in
                    zip(names, curves, strict=True)],
-        "runs": [{**point, **row} for point, row in zip(points, rows, strict=True)],
+        "runs": rows,
         "guide": guide(scenario.scene),
     }  # fmt: skip
     with reading_in({"rad/s": "rpm"}):

@@ -28,6 +28,8 @@ from .failures.cases import integration as exhibit
 
 METHODS = ("adams", "bdf", "ida", "dop853", "rk45", "radau", "expm")
 DEFAULT = "adams"
+# Of a point what its row begins with.
+OF_POINT = ("method", "accuracy", "turns")
 # What the critical-speed study does at the edges of its bracket, and how far below it the method must stay.
 EDGE, STUDY_TURNS, STUDY_ACCURACY, MARGIN = 2e-5, 200, 1e-7, 100.0
 MOST_CALLS = 600_000
@@ -78,13 +80,13 @@ def run(scenario, settings, tools) -> Answer:
     damping, resolved = [], None
     if speed:
         points = [{**point, "speed": speed} for point in every]
-        damping = joined(points, tools.map(partial(damped, scenario.scene), points, "damping"))
+        damping = tools.map(partial(damped, scenario.scene), points, "damping", OF_POINT)
         (resolved,) = tools.map(partial(resolution, scenario.scene), [{"speed": speed}], "resolution")
     drift, drift_why = [], ""
     try:
         free_ring(scenario.scene)
         every += [{"turns": settings.long, "method": DEFAULT, "accuracy": TOLD}] if settings.long else []
-        drift = joined(every, tools.map(partial(drifted, scenario.scene), every, "drift"))
+        drift = tools.map(partial(drifted, scenario.scene), every, "drift", OF_POINT)
         if all("failed" in row for row in drift):
             drift, drift_why = [], drift[0]["failed"]
     except SceneError as error:
@@ -92,11 +94,6 @@ def run(scenario, settings, tools) -> Answer:
     answer = {"critical_speed": speed, "reason": why, "damping": damping, "resolved": resolved, "drift": drift,
               "drift_reason": drift_why, "turns": settings.turns}  # fmt: skip
     return Answer(answer, _found(answer), _tables(answer), _panels(answer), _notes(answer))
-
-
-def joined(points, rows) -> list[dict]:
-    keys = ("method", "accuracy", "turns")
-    return [{**{k: point[k] for k in keys}, **row} for point, row in zip(points, rows, strict=True)]
 
 
 def tolerance(method, accuracy, memory) -> float:

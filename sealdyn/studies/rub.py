@@ -34,6 +34,7 @@ from ..simulation.stability import critical_speed
 from ..status import Status
 from ..units import Speed
 from . import Info
+from .critical_speed import at_point
 
 # Speeds, relative to the critical one, at which a whirl is let go.
 ABOVE = (1.02, 1.1, 1.3)
@@ -122,7 +123,7 @@ def run(scenario, settings, tools) -> Answer:
     numbers = {"key": key, "touch": touch_level(scenario.scene), "rows": rows, "reason": failed}
     numbers["units"] = {"rows/value": unit}
     numbers |= _judged(base, rows, settings, scenario, tools)
-    numbers["whirl"] = _whirled(base, scenario, settings, tools) if settings.whirl else None
+    numbers["whirl"] = _whirled(scenario, settings, tools) if settings.whirl else None
     if not any(row["status"] == Status.OK for row in rows):
         numbers["status"] = Status.FAILED
     return Answer(numbers, _found(numbers), _tables(numbers), _panels(numbers), failed)
@@ -174,20 +175,16 @@ def _judged(base, rows, settings, scenario, tools) -> dict:
 # --- whirl above the critical speed -----------------------------------------------------------------------
 
 
-def _whirled(base, scenario, settings, tools) -> dict:
+def _whirled(scenario, settings, tools) -> dict:
     """Where a small whirl of the unforced seal settles."""
     model = free_model(frozen_at_end(scenario.scene), initially(scenario.scene.shaft.speed))
     critical = critical_speed(model)
     if critical is None and not settings.whirl_speeds:
         return {"critical_speed": None, "rows": []}
     speeds = list(settings.whirl_speeds) or [float(f"{f * critical:.6g}") for f in ABOVE]
-    rows = tools.map(partial(whirl, scenario.scene), [{**base, "speed": w} for w in speeds], "whirl")
-    return {"critical_speed": critical, "rows": [{"speed": w, **row} for w, row in zip(speeds, rows, strict=True)]}
-
-
-def whirl(scene, point: dict) -> dict:
-    """Fate of a small whirl at one speed."""
-    return whirl_fate(frozen_at_end(scene), point["speed"], point["accuracy"])
+    points = [{"speed": w, "accuracy": settings.accuracy} for w in speeds]
+    fate = partial(at_point, whirl_fate, frozen_at_end(scenario.scene))
+    return {"critical_speed": critical, "rows": tools.map(fate, points, "whirl", ("speed",))}
 
 
 # --- what is shown ------------------------------------------------------------------------------------------

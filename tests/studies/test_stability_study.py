@@ -202,7 +202,7 @@ def test_modes_that_decay_alike_are_told_apart_in_time():
 @pytest.mark.parametrize("rate, agrees", [(-100.0, True), (-80.0, False), (100.0, False)])
 def test_a_growth_rate_that_is_another_one_does_not_agree(rate, agrees, monkeypatch):
     monkeypatch.setattr(stability, "growth_rate", lambda *given: {"rate": rate, "uncertainty": 0.5})
-    point = {"values": {"shaft.speed": 1000.0}, "rate": -100.5}
+    point = {"values": {"shaft.speed": 1000.0}, "growth_rate": -100.5}
     assert stability.confirmed(read_scenario(FMS), point)["agrees"] is agrees
 
 

@@ -99,8 +99,8 @@ def speed_ramps(scenario, settings, tools) -> Answer:
     plan = planned(scenario, settings)
     base, mode, crossing = plan["base"], plan["mode"], plan["crossing"]
     begin, end, order = base["begin"], base["end"], base["order"]
-    rows = tools.map(partial(passage, plan["scenario"]), [{**base, "rate": rate} for rate in plan["rates"]], "passage")
-    rows = [{"rate": rate, **row} for rate, row in zip(plan["rates"], rows, strict=True)]
+    points = [{**base, "rate": rate} for rate in plan["rates"]]
+    rows = tools.map(partial(passage, plan["scenario"]), points, "passage", ("rate",))
     speeds = np.linspace(begin, end, 161)
     linear = plan["steady"].curve(speeds, order)
     answer = {
@@ -203,8 +203,7 @@ def load_ramps(scenario, settings, tools) -> Answer:
         raise wrong(scenario, "hold", "0 s with a step", "a time above zero: a step there and back at once is none")
     base = {"key": key, "begin": begin, "end": end, "settle": settle, "hold": hold, "rest": wait}
     slow = quasi_static(scenario, key, begin, end)
-    rows = tools.map(partial(load_trip, scenario), [{**base, "rate": rate} for rate in rates], "ramps")
-    rows = [{"rate": rate, **row} for rate, row in zip(rates, rows, strict=True)]
+    rows = tools.map(partial(load_trip, scenario), [{**base, "rate": rate} for rate in rates], "ramps", ("rate",))
     for row in rows:
         row["overshoot"] = overshoot(row, slow) if "failed" not in row else None
     answer = {"key": key, "begin": begin, "end": end, "unit": unit, "rate_unit": rate_unit(unit), "decay": decay,

@@ -70,24 +70,24 @@ def run(scenario, settings, tools) -> Answer:
         np.atleast_1d(x).tolist() for x in (settings.force_ratios, settings.starts, settings.inertia)
     )
     ratios = sorted(set(ratios))
-    balances = tools.map(partial(balance, scene), [{"force_ratio": q} for q in ratios], "balance")
+    balances = tools.map(partial(balance, scene), [{"force_ratio": q} for q in ratios], "balance", ("force_ratio",))
     points = [
-        {"force_ratio": q, "support": support, "start": start, "inertia": inertia}
+        {**how, "force_ratio": q, "support": support, "start": start, "inertia": inertia}
         for q in ratios
         for support in (OWN, NEEDED)
         for start in starts
         for inertia in inertias
         if support == OWN or q > closed.least_force_ratio(ring.edges)
     ]
-    released = tools.map(partial(release, scene), [{**how, **point} for point in points], "released")
+    released = tools.map(partial(release, scene), points, "released", ("force_ratio", "support", "start", "inertia"))
     answer = {
         "seal": {**vars(ring), "sliding_speed": ring.sliding_speed, "spring_force": ring.spring_force,
                  "edges": ring.edges._asdict()},
         "guide": own_guide(scene, ring),
         "least_force_ratio": closed.least_force_ratio(ring.edges),
         "least_attracting_force_ratio": closed.least_attracting_force_ratio(ring.edges),
-        "balance": [{"force_ratio": q, **row} for q, row in zip(ratios, balances, strict=True)],
-        "released": [{**point, **row} for point, row in zip(points, released, strict=True)],
+        "balance": balances,
+        "released": released,
         "published": [{"force_ratio": row.force_ratio, "mean_film": row.mean_film,
                        "sealing_number": row.mean_film**2 / closed.LUDWIG_ALLEN_GROUP}
                       for row in closed.LUDWIG_ALLEN if not ring.edges.sealed],

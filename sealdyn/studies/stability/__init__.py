@@ -271,16 +271,10 @@ def unconditional(scene) -> dict:
 def _confirmed(scenario, axes, tilt, count, tools) -> list[dict]:
     """Points on both sides of the threshold (of the least damped, if there is none), run in time."""
     chosen = _beside_threshold(tilt, count)
-    keys = [a["key"] for a in axes]
-    points = [
-        {"values": {keys[0]: axes[0]["values"][i], keys[1]: axes[1]["values"][j]}, "rate": float(tilt[j, i])}
-        for j, i in chosen
-    ]
-    rows = tools.map(partial(confirmed, scenario), points, "confirm")
-    return [
-        {"x": p["values"][keys[0]], "y": p["values"][keys[1]], "growth_rate": p["rate"], **row}
-        for p, row in zip(points, rows, strict=True)
-    ]
+    x, y = axes
+    points = [{"x": x["values"][i], "y": y["values"][j], "growth_rate": float(tilt[j, i])} for j, i in chosen]
+    points = [{**point, "values": {x["key"]: point["x"], y["key"]: point["y"]}} for point in points]
+    return tools.map(partial(confirmed, scenario), points, "confirm", ("x", "y", "growth_rate"))
 
 
 def _beside_threshold(tilt, count) -> list[tuple[int, int]]:
@@ -307,7 +301,7 @@ def confirmed(scenario, point: dict) -> dict:
         rotor=replace(scene.rotor, misalignment=0.0, runout=0.0, axial_runout=[]),
         stator=replace(scene.stator, misalignment=0.0),
     )
-    model, speed, rate = Model(scene), scene.shaft.speed, point["rate"]
+    model, speed, rate = Model(scene), scene.shaft.speed, point["growth_rate"]
     scene = frozen_at_start(model.scene, clearance=model.clearance)
     if rate == 0.0 or speed == 0.0:
         raise ValueError("neutral, or a shaft at rest: nothing to measure")

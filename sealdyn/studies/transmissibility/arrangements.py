@@ -233,8 +233,7 @@ def points_in_time(scenario, settings, speeds, own_speed, tools) -> list[dict]:
         for w in chosen
         for seal in SEALS
     ]
-    rows = tools.map(partial(measured, scenario.scene), points, "time domain")
-    return [{"seal": p["seal"], "speed": p["speed"], **row} for p, row in zip(points, rows, strict=True)]
+    return tools.map(partial(measured, scenario.scene), points, "time domain", ("seal", "speed"))
 
 
 def measured(scene, point: dict) -> dict:

@@ -108,9 +108,9 @@ def run(scenario, settings, tools) -> Answer:
     if points:
         # What a gas dam takes a minute for is not what everybody asks.
         tools.tell(f"vibration: {len(points)} tones in the time domain; --runs 0 leaves them out")
-    rows = tools.map(partial(measured, scenario.scene), points, "time domain") if points else []
-    numbers["time_domain"] = [{**point, **row} for point, row in zip(points, rows, strict=True)]
-    apart = [row["deviation"] for row in numbers["time_domain"] if "failed" not in row]
+    rows = tools.map(partial(measured, scenario.scene), points, "time domain", ("direction", "frequency"))
+    numbers["time_domain"] = rows
+    apart = [row["deviation"] for row in rows if "failed" not in row]
     numbers["deviation"] = max(apart, default=None)
     numbers["units"] = dict.fromkeys(("weakest/touch", "time_domain/touch", "linear_touch"), unit_of(directions))
     return Answer(numbers, _found(numbers), _tables(numbers), _panels(numbers), _notes(numbers))
