@@ -66,21 +66,14 @@ class Settings:
 
 def run(scenario, settings, tools) -> Answer:
     """The curve of initial over net waviness, operating points by two roads."""
-    scene = at_work(frozen_at_start(scenario.scene))[0]
-    ring = scene.stator.elastic
-    if ring is None:
-        expected = "the ring that bends: bending_stiffness, radius, torsion_ratio"
-        raise SceneError("stator.elastic", "nothing", expected)
-    initial, order = unloaded(scene), order_of(scene)
-    low = settings.net_from if settings.net_from is not None else LEAST * initial
-    high = settings.net_to if settings.net_to is not None else LARGEST * initial
-    if not 0.0 < low < high:
-        raise SceneError("study.elastic_ring.net_to", f"{high:g} m", f"more than net_from = {low:g} m > 0")
+    scene = bending(scenario, "torsion_ratio")
+    ring, initial, order = scene.stator.elastic, unloaded(scene), order_of(scene)
+    low, high = asked_range(settings, "study.elastic_ring.net", "m", LEAST * initial, LARGEST * initial)
     # The same cells for all: those of a wave as high as the film is thick, which is as thick as the faces are rough.
     rough = scene.contact.roughness if scene.contact else (low * high) ** 0.5
     scene = with_cells_of(scene, min(max(rough, low), high))
     nets = [float(net) for net in np.geomspace(low, high, max(3, settings.points))]
-    rows = tools.map(partial(_point, scene), nets, "wavinesses")
+    rows = tools.map(partial(point_of, scene), nets, "wavinesses")
     along = [OperatingPoint(**row) for row in rows if "failed" not in row]
     if not along:
         raise SceneError("stator.elastic", rows[0]["failed"], "a seal with a balance")
@@ -96,11 +89,28 @@ def run(scenario, settings, tools) -> Answer:
     return Answer(answer, _found(answer), [_table(answer)], _panels(answer), _notes(answer))
 
 
-def _point(scene, net) -> dict:
-    try:
-        return asdict(operating_point(scene, net))
-    except SceneError as error:
-        return {"failed": str(error)}
+def bending(scenario, more: str) -> Scene:
+    """The scene as it works; raises SceneError where its ring does not bend, and asks for `more` keys of that."""
+    scene = at_work(frozen_at_start(scenario.scene))[0]
+    if scene.stator.elastic is None:
+        raise SceneError("stator.elastic", "nothing", f"the ring that bends: bending_stiffness, radius, {more}")
+    return scene
+
+
+def asked_range(settings, key: str, unit: str, low: float, high: float) -> tuple[float, float]:
+    """Ends (SI) of a range that a study is asked for by two settings, key_from and key_to, in place of `low` and
+    `high`; `key` "study.NAME.SETTING".  Raises SceneError for one that does not rise from above 0."""
+    asked = key.rpartition(".")[2]
+    given = [getattr(settings, f"{asked}_{end}") for end in ("from", "to")]
+    low, high = (default if end is None else end for end, default in zip(given, (low, high), strict=True))
+    if not 0.0 < low < high:
+        raise SceneError(f"{key}_to", f"{high:g} {unit}", f"more than {asked}_from = {low:g} {unit} > 0")
+    return low, high
+
+
+def point_of(scene, net: float) -> dict:
+    """The operating point of a net waviness (m), as a row."""
+    return asdict(operating_point(scene, net))
 
 
 def _let_go(scene, settings, point, holds) -> dict:

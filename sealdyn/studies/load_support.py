@@ -10,7 +10,7 @@ from ..quantities import in_words
 from ..scenario.errors import ScenarioError
 from ..scenario.reader import with_values
 from ..scenario.settings import axis, with_own_unit
-from ..scene.scene import SceneError, frozen_at_start
+from ..scene.scene import frozen_at_start
 from . import Info
 from .equilibrium import find, resting, root_row
 from .sweep import along, quantity_along
@@ -72,13 +72,10 @@ def run(scenario, settings, tools) -> Answer:
 
 def balances(scenario, values) -> dict:
     """OUTPUTS of a scenario with other `values`, {dotted key: as written}, where it rests: at the widest stable of its
-    `roots`, which are those of the study equilibrium."""
-    try:
-        given = frozen_at_start(with_values(scenario, values).scene)
-        scene = resting(given)
-        found = find(scene)
-    except (ScenarioError, SceneError) as error:
-        return {"failed": str(error)}
+    `roots`, which are those of the study equilibrium.  Raises ScenarioError or SceneError."""
+    given = frozen_at_start(with_values(scenario, values).scene)
+    scene = resting(given)
+    found = find(scene)
     roots = [_with_ratio(root_row(scene, root, found)) for root in found.roots]
     stable = [root for root in roots if root["stable"]]
     rest = stable[-1] if stable else dict.fromkeys(OUTPUTS)

@@ -4,7 +4,7 @@ between two O-rings can bend the ring to and that hold; the fold, and the stiffe
 One curve of balances for each order of waves answers for all rings (dynamics/elastic_ring.py).
 """
 
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import cycle
 from typing import Annotated
@@ -13,14 +13,14 @@ import numpy as np
 from pydantic import Field
 
 from ..answers import CYCLE, Answer, Axis, Level, Panel, Series, Table, table_of
-from ..dynamics.elastic_ring import PLACES, READ, design, joined, operating_point, order_of, stiffest, with_cells_of
-from ..dynamics.warm_state import at_work
+from ..dynamics.elastic_ring import PLACES, READ, design, joined, order_of, stiffest, with_cells_of
 from ..quantities import in_words
 from ..scene.film import MOST_AROUND
 from ..scene.forces import HALF_HEIGHT
-from ..scene.scene import Scene, SceneError, frozen_at_start
+from ..scene.scene import Scene, SceneError
 from ..units import BendingStiffness, Length, VolumeFlow
 from . import Info
+from .elastic_ring import asked_range, bending, point_of
 
 INFO = Info(
     timed=("lebeck_driven", 13),
@@ -61,10 +61,7 @@ class Settings:
 
 def run(scenario, settings, tools) -> Answer:
     """The best waviness of each order on each ring, and what limits it."""
-    scene = at_work(frozen_at_start(scenario.scene))[0]
-    if scene.stator.elastic is None:
-        expected = "the ring that bends: bending_stiffness, radius, drive_pressure, drive_length"
-        raise SceneError("stator.elastic", "nothing", expected)
+    scene = bending(scenario, "drive_pressure, drive_length")
     nets, stiffnesses = _nets(scene, settings), _stiffnesses(scene, settings)
     limit = settings.leakage_limit
     if limit is None and scenario.application is not None:
@@ -85,27 +82,18 @@ def run(scenario, settings, tools) -> Answer:
 
 def _nets(scene, settings) -> np.ndarray:
     """Net wavinesses (m) that are computed."""
-    half = HALF_HEIGHT * scene.contact.roughness if scene.contact else None
-    low, high = (
-        given if given is not None else half and times * half
-        for given, times in ((settings.net_from, LEAST), (settings.net_to, LARGEST))
-    )
-    if low is None or high is None:
+    if scene.contact is None and None in (settings.net_from, settings.net_to):
         raise SceneError("study.wave_design.net_from", "no range of waviness", "net_from and net_to: faces are smooth")
-    if not 0.0 < low < high:
-        raise SceneError("study.wave_design.net_to", f"{high:g} m", f"more than net_from = {low:g} m > 0")
-    return np.geomspace(low, high, settings.points)
+    half = HALF_HEIGHT * scene.contact.roughness if scene.contact else 0.0
+    ends = asked_range(settings, "study.wave_design.net", "m", LEAST * half, LARGEST * half)
+    return np.geomspace(*ends, settings.points)
 
 
 def _stiffnesses(scene, settings) -> np.ndarray:
     """Bending stiffnesses (N m^2) of the rings."""
     own = scene.stator.elastic.bending_stiffness
-    low = settings.stiffness_from if settings.stiffness_from is not None else 0.1 * own
-    high = settings.stiffness_to if settings.stiffness_to is not None else 10.0 * own
-    if not 0.0 < low < high:
-        expected = f"more than stiffness_from = {low:g} N*m^2 > 0"
-        raise SceneError("study.wave_design.stiffness_to", f"{high:g} N*m^2", expected)
-    return np.geomspace(low, high, settings.rings)
+    ends = asked_range(settings, "study.wave_design.stiffness", "N*m^2", 0.1 * own, 10.0 * own)
+    return np.geomspace(*ends, settings.rings)
 
 
 def of_order(scene: Scene, order: int) -> Scene:
@@ -121,18 +109,11 @@ def of_order(scene: Scene, order: int) -> Scene:
 def _curve(scene, nets, tools) -> dict[str, np.ndarray]:
     """As `joined`, computed."""
     scene = with_cells_of(scene, float(np.sqrt(nets[0] * nets[-1])))
-    rows = tools.map(partial(_point, scene), [float(net) for net in nets], f"{order_of(scene)} waves")
+    rows = tools.map(partial(point_of, scene), [float(net) for net in nets], f"{order_of(scene)} waves")
     rows = [row for row in rows if "failed" not in row]
     if len(rows) < 2:
         raise SceneError("stator.elastic", f"no balance with {order_of(scene)} waves", "a seal with a balance")
     return joined(scene.stator.elastic.compliance(order_of(scene)), rows)
-
-
-def _point(scene, net) -> dict:
-    try:
-        return asdict(operating_point(scene, net))
-    except SceneError as error:
-        return {"failed": str(error)}
 
 
 def _best(designs) -> dict | None:
