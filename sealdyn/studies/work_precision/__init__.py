@@ -26,6 +26,7 @@ from ...solvers.own_methods import collocation
 from ...status import Status
 from .. import Info
 from . import film_ladder
+from .film_ladder import JUDGE, TIGHT
 from .observation import WHERE, errors, is_radial, observe, worst
 
 NAMES = {
@@ -56,8 +57,6 @@ OF_FILMS = ("scipy_bdf", "ida2", "ida1", "segregated", "quasi_static")
 ON_RATES = ("scipy_bdf", "radau", "dop853", "rk45")
 LATER = (*SLOW, *OF_FILMS)
 Method = Literal[*FAST, *LATER]
-# Far below every judged run; the embedded estimate of the judge is of lower order than the judge itself.
-TIGHT, JUDGE = 1e-11, 1e-11
 # The loosest accuracy that a run may be asked for.
 LOOSEST = 0.1
 ASKED = (1e-2, 1e-4, 1e-6, 1e-9)
@@ -163,14 +162,12 @@ def _can(run, method: str) -> bool:
 
 
 def ready(scenario, tolerance: float = TIGHT):
-    """A fresh run whose film and gap are evaluated far more accurately than any judged run.  Coulomb friction
-    fades over a band that follows the accuracy, so there the scenario's own is kept.  The steps of a radial seal are no
-    longer than what is interpolated between them allows: its accuracy is the `tolerance`."""
+    """A fresh run whose film and gap are evaluated far more accurately than any judged run.  The steps of a
+    radial seal are no longer than what is interpolated between them allows: its accuracy is the `tolerance`."""
     if is_radial(scenario.scene):
         accuracy = min(max(tolerance, TIGHT), LOOSEST)
     else:
-        seals = (scenario.scene.stator.secondary_seal, scenario.scene.rotor.secondary_seal)
-        accuracy = scenario.run.accuracy if any(s and s.law == "coulomb" for s in seals) else TIGHT
+        accuracy = film_ladder.sharpest(scenario)
     run, *_ = prepare_run(with_values(scenario, {"run.accuracy": accuracy, "run.solver": "auto"}))
     return run
 
@@ -191,57 +188,41 @@ def reference(scenario, samples: int, limit: float):
     DOP853 at 1e-13 where they can, then the other nodes.  Of a film with unknowns of its own its method far sharper
     than asked, then SciPy's Radau where every unknown has a rate, or the same again."""
     run = ready(scenario)
-    segment, method = run.segment(0), choose_method(run)[0]
-    if segment.film.stop > segment.film.start:
-        return _by_itself(scenario, method, samples, limit)
-    stiff = method in ("bdf", "radau")
-    own = ["radau_nodes", "gauss"] if stiff else ["gauss", "radau_nodes"]
-    if _can(run, "expm"):
-        others = [("expm", REFERENCE_METHODS["expm"], 1e-13)]
-    elif stiff or segment.has_residual_form:
-        others = []
-    else:
-        others = [("dop853", REFERENCE_METHODS["dop853"], 1e-13)]
-    trials = [
-        (own[0], collocation, JUDGE),
-        *others,
-        (own[1], collocation, JUDGE),
-        ("dop853", REFERENCE_METHODS["dop853"], 1e-12),
-    ]
+    own = run.segment(0).film.stop > run.segment(0).film.start
     good = []
-    for name, steps, tolerance in trials:
+    for name, tolerance in _sharper(scenario, run) if own else _others(run):
+        steps = REFERENCE_METHODS.get(name, collocation)
         found = observe(ready(scenario, tolerance), steps, name, tolerance, limit, samples)
-        if found.status in (Status.OK, Status.COLLAPSED) and name not in [n for n, _ in good]:
-            good.append((name, found))
+        if found.status in (Status.OK, Status.COLLAPSED) and (own or name not in [one for one, *_ in good]):
+            good.append((name, found, tolerance, f"{NAMES[name]} at {tolerance:.0e}" if own else NAMES[name]))
         if len(good) == 2:
             break
     if not good:
         return found, None, {"exact": None, "second": None, "reason": found.reason}
-    exact = good[0][1]
-    band = worst(errors(good[1][1], exact)) if len(good) > 1 else None
-    second = NAMES[good[1][0]] if len(good) > 1 else None
-    return exact, band, {"exact": NAMES[good[0][0]], "second": second, "reason": exact.reason, "method": good[0][0],
-                         "status": exact.status}  # fmt: skip
+    (name, exact, tolerance, words), *others = good
+    band, second = (worst(errors(others[0][1], exact)), others[0][3]) if others else (None, None)
+    judges = {"exact": words, "second": second, "reason": exact.reason, "method": None if own else name,
+              "status": exact.status}  # fmt: skip
+    return exact, band, judges | ({"least": CLOSEST * tolerance} if own else {})
 
 
-def _by_itself(scenario, method: str, samples: int, limit: float):
-    """As `reference`, by a method at tolerances far below the scenario's accuracy."""
-    good, trials = [], [(method, share) for share in SHARP]
-    if _can(ready(scenario), "radau"):
+def _others(run) -> list[tuple[str, float]]:
+    """Judges that are none of the judged methods, and their tolerances."""
+    stiff = choose_method(run)[0] in ("bdf", "radau")
+    first, last = ("radau_nodes", "gauss") if stiff else ("gauss", "radau_nodes")
+    between = [] if stiff or run.segment(0).has_residual_form else [("dop853", 1e-13)]
+    if _can(run, "expm"):
+        between = [("expm", 1e-13)]
+    return [(first, JUDGE), *between, (last, JUDGE), ("dop853", 1e-12)]
+
+
+def _sharper(scenario, run) -> list[tuple[str, float]]:
+    """Judges at tolerances far below the scenario's accuracy."""
+    trials = [(choose_method(run)[0], share) for share in SHARP]
+    if _can(run, "radau"):
+        method = trials[0][0]
         trials = [(method, SHARPEST), ("radau", SHARPEST), trials[0], ("radau", SHARP[0]), *trials[1:]]
-    for name, share in trials:
-        tolerance = max(share * scenario.run.accuracy, TIGHT)
-        found = observe(ready(scenario), REFERENCE_METHODS[name], name, tolerance, limit, samples)
-        if found.status in (Status.OK, Status.COLLAPSED):
-            good.append((f"{NAMES[name]} at {tolerance:.0e}", found, tolerance))
-        if len(good) == 2:
-            break
-    if not good:
-        return found, None, {"exact": None, "second": None, "reason": found.reason}
-    (name, exact, tolerance), *others = good
-    band, second = (worst(errors(others[0][1], exact)), others[0][0]) if others else (None, None)
-    return exact, band, {"exact": name, "second": second, "reason": exact.reason, "method": None,
-                         "status": exact.status, "least": CLOSEST * tolerance}  # fmt: skip
+    return [(name, max(share * scenario.run.accuracy, TIGHT)) for name, share in trials]
 
 
 def judge(scenario, exact, judges: dict, point: dict) -> dict:

@@ -18,6 +18,7 @@ from ...solvers.own_methods import collocation
 from ...status import Status
 from .observation import errors, observe, worst
 
+# Far below every judged run; the embedded estimate of the judge is of lower order than the judge itself.
 JUDGE, TIGHT = 1e-11, 1e-11
 # Points over a period at which the harmonic balance is looked at.
 POINTS = 4096
@@ -53,19 +54,21 @@ def _grids(scenario, name: str) -> list[tuple[str, dict]]:
     own = film_named(name)
     tables = {"half the cells": own.halved(film), "its cells": film}
     tables |= {TWICE: own.doubled(film, 1)} if own.doubled is not None else {}
-    return [(f"{name.replace('_', ' ')} film, {words}", {"film.model": name, **_cells(name, table)})
-            for words, table in tables.items()]  # fmt: skip
+    return _named(name, {words: _cells(name, table) for words, table in tables.items()})
 
 
 def _columns(scenario) -> list[tuple[str, dict]]:
     """The same of the film over grooves, which no other film sees."""
-    # Loaded for grooves only.
     from ...films._grooved.cells import options_of
 
     name, columns = film_of(scenario.scene).name, options_of(scenario.scene.film).columns
-    tables = {"half the cells": columns // 2, "its cells": columns, TWICE: 2 * columns}
-    return [(f"{name.replace('_', ' ')} film, {words}", {"film.model": name, f"film.{name}.columns": count})
-            for words, count in tables.items()]  # fmt: skip
+    counts = {"half the cells": columns // 2, "its cells": columns, TWICE: 2 * columns}
+    return _named(name, {words: {f"film.{name}.columns": count} for words, count in counts.items()})
+
+
+def _named(name: str, cells: dict[str, dict]) -> list[tuple[str, dict]]:
+    """(label, overrides) of a film with each of these {words: cells}."""
+    return [(f"{name.replace('_', ' ')} film, {words}", {"film.model": name, **own}) for words, own in cells.items()]
 
 
 def _cells(name: str, film) -> dict:
@@ -102,7 +105,7 @@ def _highest(scenario, ladder, samples, longest):
     """The exact run of the highest rung that this scene can be run with, and that rung."""
     for rung in reversed(ladder):
         try:
-            run, *_ = prepare_run(with_values(scenario, {**rung[1], "run.accuracy": _accuracy(scenario), **AUTO}))
+            run, *_ = prepare_run(with_values(scenario, {**rung[1], "run.accuracy": sharpest(scenario), **AUTO}))
             # A film with unknowns of its own is never exact.
             own = run.model.unknowns.film_unknowns is not None
             found = None if own else observe(run, collocation, "gauss", JUDGE, 2 * longest, samples)
@@ -124,7 +127,9 @@ AUTO = {"run.solver": "auto"}
 TWICE = "twice the cells"
 
 
-def _accuracy(scenario):
+def sharpest(scenario) -> float:
+    """Accuracy of an exact run: Coulomb friction fades over a band that follows the accuracy, so there the scenario's
+    own is kept."""
     seals = (scenario.scene.stator.secondary_seal, scenario.scene.rotor.secondary_seal)
     return scenario.run.accuracy if any(s and s.law == "coulomb" for s in seals) else TIGHT
 
