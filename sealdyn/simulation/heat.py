@@ -70,6 +70,18 @@ def limits_of(found: Warming, high: float) -> dict:
         there, (_, near) = found.at_speed(speed), known[-1]
         return there.continued(near or there.cold_state)
 
+    def located(speed, state, share, holds):
+        """The first speed, within a share, at which no state `holds`, and what is there: known from the last speed at
+        which one does and a later one."""
+        while abs(speed - known[-1][0]) > share * abs(speed):
+            middle = 0.5 * (known[-1][0] + speed)
+            between = look(middle)
+            if between is not None and holds(between):
+                known.append((middle, between))
+            else:
+                speed, state = middle, between
+        return speed, state
+
     fold = None
     for speed in map(float, np.linspace(0.0, high, SPEEDS + 1)[1:]):
         state = look(speed)
@@ -77,26 +89,15 @@ def limits_of(found: Warming, high: float) -> dict:
             fold = speed
             break
         known.append((speed, state))
-    while fold is not None and abs(fold - known[-1][0]) > FOLD * abs(fold):
-        middle = 0.5 * (known[-1][0] + fold)
-        if (state := look(middle)) is None:
-            fold = middle
-        else:
-            known.append((middle, state))
-    if fold is not None and known[-1][1].rise > TABLE * found.highest:
-        fold = None
+    if fold is not None:
+        fold, _ = located(fold, None, FOLD, lambda state: True)
+        fold = fold if known[-1][1].rise <= TABLE * found.highest else None
     unstable = [k for k, (_, state) in enumerate(known) if state is not None and not state.stable]
     if not unstable:
         return {"hunting": None, "fold": fold}
-    speed, state = known[unstable[0]]
+    begun = known[unstable[0]]
     del known[unstable[0] :]
-    while abs(speed - known[-1][0]) > ONSET * abs(speed):
-        middle = 0.5 * (known[-1][0] + speed)
-        between = look(middle)
-        if between is not None and between.stable:
-            known.append((middle, between))
-        else:
-            speed, state = middle, between
+    speed, state = located(*begun, ONSET, lambda state: state.stable)
     period = state and state.period
     return {"hunting": {"speed": speed, "period": period} if period else None, "fold": fold}
 

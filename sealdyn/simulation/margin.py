@@ -120,8 +120,9 @@ def contact_margin(model, at, linear, tilt, answers) -> tuple[float, str | None]
     return min(ends, key=lambda end: end[0])
 
 
-def _steady_state(model):
-    """The linearised scene, its answers and, of its steady state, the extremes and the period (s)."""
+def steady_state(model: Model):
+    """The linearised scene, its answers and, of its steady state, the extremes (`steady_extremes`) and the period
+    (s)."""
     linear, period = model.linear_scene(), RunState(model, 1.0).period()
     answers = linear.answers(model.segment().harmonics())
     return linear, answers, (*steady_extremes(linear, answers, period), period)
@@ -133,7 +134,7 @@ def limit_of_forcing(model_of: Callable[[float], Model], most: float) -> dict | 
 
     def found(value):
         model = model_of(value)
-        linear, answers, tilt = _steady_state(model)
+        linear, answers, tilt = steady_state(model)
         return contact_margin(model, model.start, linear, tilt, lambda: answers)
 
     def beyond(value):
@@ -195,12 +196,11 @@ def linear_onset(scene, key: str, rough: float = 0.0) -> tuple[float, float]:
 
 def linear_film(model) -> tuple[float, float]:
     """Smallest film thickness (m) of the linear steady state, negative beyond touch, and its radius (m)."""
-    most, _, closing, _ = _steady_state(model)[-1]
-    coning = model.face[3] + model.coning_change()
-    inner, outer = model.clearance, model.clearance + coning * (model.face[1] - model.face[0])
-    inner_left = inner - closing - model.face[0] * most
-    outer_left = outer - closing - model.face[1] * most
-    return float(min(inner_left, outer_left)), float(model.face[0 if inner_left <= outer_left else 1])
+    (most, _, closing, _), face = steady_state(model)[-1], model.face
+    coning = face[3] + model.coning_change()
+    gaps = model.clearance, model.clearance + coning * (face[1] - face[0])
+    film, radius = min((gap - closing - radius * most, radius) for gap, radius in zip(gaps, face[:2], strict=True))
+    return float(film), float(radius)
 
 
 def linear_films(scene, key: str, rough: float, own) -> dict:

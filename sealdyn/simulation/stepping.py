@@ -197,8 +197,9 @@ class Simulation:
             raise ScenarioError(self.name, name, "nothing that can be set", expected)
         quantity, terms = KINDS[name]
         given = value if isinstance(value, tuple | list) else (value,)
+        now = given[0] if given else value
         try:
-            first = quantity.read(_of_python(given[0])) if given else quantity.read(value)
+            first = quantity.read(now.item() if isinstance(now, np.generic) else now)
             rates = [float(x) for x in given[1:]]
         except QuantityError as error:
             raise ScenarioError(self.name, name, error.found, error.expected) from None
@@ -308,11 +309,6 @@ class Simulation:
             y, yp = segment.start(tau, y)
         film = (y[None, segment.film],) if segment.film.stop > segment.film.start else ()
         return (*segment.motion(y[None, :], yp[None, :]), *film)
-
-
-def _of_python(value):
-    """A number of NumPy's as Python's."""
-    return value.item() if isinstance(value, np.generic) else value
 
 
 def _with_all_motions(scenario: Scenario) -> Scenario:

@@ -83,7 +83,6 @@ def run(scenario, settings, tools) -> Answer:
 
 def _over_grooves(scene, settings, tools) -> Answer:
     """Roots of the ring on the film of one pitch, at fewer speeds."""
-    # Sparse matrices are loaded for grooves only.
     from ._grooved_roots import roots_over_speed
 
     top = settings.speed_to if settings.speed_to is not None else 2.0 * abs(scene.shaft.speed) or 2000.0
@@ -300,7 +299,9 @@ def thresholds(modes, speeds) -> list[dict]:
 def _found(numbers) -> str:
     """The first loss of damping, or what there is in its place."""
     turns = [point for point in numbers["thresholds"] if point["what"] == "damping"]
-    growing = [number for number, mode in enumerate(numbers["modes"], 1) if _grows(mode)]
+    # Beyond rounding.
+    growing = [number for number, mode in enumerate(numbers["modes"], 1)
+               if np.all(np.array(mode["growth_rate"]) > SAME * (1.0 + np.abs(mode["frequency"])))]  # fmt: skip
     met = [crossing for crossing in numbers["crossings"] if crossing["line"] == 1.0]
     if growing:
         return f"Unstable at every speed of this range: mode {' and '.join(map(str, growing))}."
@@ -381,8 +382,3 @@ def _panels(numbers) -> list[Panel]:
               wide=1.4),
         Panel("Damping", over, scale, decrements, zero + levels, note="no mode oscillates" * (not decrements)),
     ]  # fmt: skip
-
-
-def _grows(mode) -> bool:
-    """Whether a mode grows at every speed, beyond rounding."""
-    return bool(np.all(np.array(mode["growth_rate"]) > SAME * (1.0 + np.abs(mode["frequency"]))))

@@ -119,7 +119,7 @@ def run(scenario, settings, tools) -> Answer:
     if asked["coning"] is not None and asked["clearance"] is not None:
         raise ScenarioError(scenario.name, "study.coefficients.clearance", "conings and clearances", "one of them")
     model, speed = Model(scene, ACCURACY), scene.shaft.speed
-    tilted = model if model.unknowns.with_tilt else Model(tilting(scene), ACCURACY)
+    tilted, speeds = model if model.unknowns.with_tilt else Model(tilting(scene), ACCURACY), _speeds(settings, speed)
     numbers = {
         **LABELS,
         "film": model.interface.name,
@@ -129,7 +129,7 @@ def run(scenario, settings, tools) -> Answer:
         "stator_speed": scene.stator.speed,
         "asperities": scene.contact is not None,
         "tilted": _tilted(tilted if settings.tilt else model, settings, speed),
-        "against_speed": _against_speed(model, settings, speed),
+        "against_speed": _columns("speed", speeds, [_listed(matrices(model, State(), w)) for w in speeds]),
         "against_clearance": _against_clearance(model, settings),
         "against_tilt": _against_tilt(tilted, settings),
     }
@@ -139,8 +139,8 @@ def run(scenario, settings, tools) -> Answer:
         numbers["synchronous"] = _listed(matrices(model, State(), omega=abs(speed))) if speed else None
     if any(values is not None for values in asked.values()):
         # Speeds that nobody asked go with frequencies only.
-        speeds = asked["speed"] or ([speed] if motion is None else _speeds(settings, speed))
-        numbers["map"] = mapped(scene, ACCURACY, speeds, motion or [0.0], asked["coning"], asked["clearance"])
+        given = asked["speed"] or ([speed] if motion is None else speeds)
+        numbers["map"] = mapped(scene, ACCURACY, given, motion or [0.0], asked["coning"], asked["clearance"])
         numbers["table"] = columns_of(numbers["map"])
     return Answer(numbers, _found(numbers), _tables(numbers), _panels(numbers), _notes(numbers))
 
@@ -188,11 +188,6 @@ def _columns(name, values, rows) -> dict:
 def _speeds(settings, speed) -> np.ndarray:
     top = settings.speed_to if settings.speed_to is not None else 3 * abs(speed) or 3000.0
     return np.linspace(0.0, top, max(2, settings.points))
-
-
-def _against_speed(model, settings, speed) -> dict:
-    speeds = _speeds(settings, speed)
-    return _columns("speed", speeds, [_listed(matrices(model, State(), w)) for w in speeds])
 
 
 def against_frequency(model, settings, speed, motion=None) -> dict:

@@ -114,7 +114,6 @@ def run(scenario, settings, tools) -> Answer:
 
 def over_grooves(scene, tools) -> dict:
     """The same of faces with grooves, by the roots of the rings on the film of one pitch alone."""
-    # Sparse matrices are loaded for grooves only.
     from ._grooved_roots import RootsOverSpeed, thresholds
 
     rates, found = thresholds(RootsOverSpeed(frozen_at_start(scene)), tools)

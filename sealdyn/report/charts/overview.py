@@ -54,7 +54,9 @@ def draw(archive_path, out_path, turns: float = 4.0):
     run = Run(archive_path, over_time=True)
     if is_radial(run.info):
         return followers.draw(archive_path, out_path, turns)
-    first, tilts, moves = run.last(turns), _tilts(run), spectrum.has_orders(run)
+    first, moves = run.last(turns), spectrum.has_orders(run)
+    # Whether the faces tilt against each other.
+    tilts = run.has("relative_misalignment") and run.largest("relative_misalignment") > 0
     figure = sheet(13.5, 9.4 if tilts else 6.9)
     ends = first > 0 and run.rows - first >= FEWEST
     ax = _placed(figure, header(figure, run) - 0.4 / figure.get_figheight(), tilts, ends, moves)
@@ -79,11 +81,6 @@ def draw(archive_path, out_path, turns: float = 4.0):
     if moves:
         spectrum.panel(ax["spectrum"], run)
     return save(figure, out_path)
-
-
-def _tilts(run: Run) -> bool:
-    """Whether the faces tilt against each other."""
-    return run.has("relative_misalignment") and run.largest("relative_misalignment") > 0
 
 
 def _placed(figure, top: float, tilts: bool, ends: bool, moves: bool) -> dict:

@@ -228,7 +228,6 @@ def rates_of(scenario, point: dict) -> dict:
 def margins(scene, tools) -> dict:
     """Growth rate, whirl ratio and critical speed at the scenario's own values, and how far off the threshold is."""
     if grooves_of(scene)[1]:
-        # Sparse matrices are loaded for grooves only.
         from .._grooved_roots import margins_over_grooves
 
         return margins_over_grooves(scene, tools)

@@ -347,7 +347,6 @@ class OverGrooves(Arrangement):
     """One arrangement; `film` (FilmOverSpeed) at any speed is that of all of them."""
 
     def __init__(self, scene: Scene, name: str, film):
-        # What solves over grooves is loaded for seals that have some.
         from .._grooved_roots import RootsOverSpeed
 
         super().__init__(scene, name)

@@ -28,7 +28,7 @@ from ...scene.forces import touch_height
 from ...scene.patterns import waves_of
 from ...scene.rings import STATOR
 from ...scene.scene import Initial, Scene, SceneError, frozen_at_start, unforced
-from ...simulation.margin import steady_extremes
+from ...simulation.margin import largest_tilt, steady_state
 from ...simulation.selection import choose_method
 from ...simulation.verification_run import price
 from ...solvers.contract import Cause, Recorder, SolverFailure, Status
@@ -81,10 +81,7 @@ class ShakenSeal:
         rough, self.thinnest = touch_height(scene), min(h for _, h in self.gaps)
         self.riding = self.thinnest <= rough and rough > 0.0
         self.level = 0.0 if self.riding else rough
-        forced = Model(scene)
-        linear, period = forced.linear_scene(), RunState(forced, 1.0).period()
-        answers = [(h, linear.response(h)) for h in forced.segment().harmonics()]
-        tilt, _, closing = steady_extremes(linear, answers, period)
+        tilt, _, closing, _ = steady_state(Model(scene))[-1]
         self.own = closing, tilt
 
     def gap_motion(self, direction: str, frequency: float) -> np.ndarray:
@@ -144,8 +141,7 @@ class ShakenSeal:
 def sizes(motion) -> tuple[float, float]:
     """Largest axial motion (m) and tilt (rad) over a period of a complex motion (3,) of the gap: of the tilt, an
     ellipse, the longer half axis, the sum of a forward and a backward circle."""
-    z, x, y = motion
-    return float(abs(z)), float(0.5 * (abs(x + 1j * y) + abs(x - 1j * y)))
+    return float(abs(motion[0])), largest_tilt(motion)
 
 
 # --- in time -----------------------------------------------------------------------------------------------

@@ -21,13 +21,12 @@ from ....scene.forces import Contact
 from ....scene.rings import ElasticRing, Stator, Support
 from ....scene.scene import Closing, Initial, RingStart, Scene, SceneError
 from ....simulation.film_error import steady_tilt
-from ....simulation.margin import steady_extremes
+from ....simulation.margin import steady_state
 from ....solvers.contract import Recorder, Status
 from ....solvers.integrate import solve
 from . import cruise_dam, integrated, row, run_from
 from .integration import lightened
 
-# --- inconsistent start ---
 # Inconsistent start: closed faces, loads no film can carry, rates and pressures that contradict the film's
 # equation.
 
@@ -148,7 +147,6 @@ def meets_inconsistent_start(scene, run) -> str:
     return "[initial] gives a start of its own" if scene.initial.given else ""
 
 
-# --- several answers ---
 # Several answers: a diverging film with rough faces has a clearance that touches and one that does not hold, a gas dam
 # that hardly narrows two that hold, a wavy ring that bends three wavinesses.
 
@@ -246,7 +244,6 @@ def meets_several_answers(scene, run) -> str:
     return f"{found} clearances at which film and closing force balance" if found > 1 else ""
 
 
-# --- linear theory ---
 # Where linear theory fails: at the tilt where the linear film says the faces touch they are far apart.
 
 # Share of the tilt at which parallel faces touch, above which linear theory is doubted.
@@ -264,11 +261,9 @@ def scene(misalignment: float, model: str = "radial"):
 
 def linear_gap(misalignment: float) -> float:
     """Smallest film over the clearance, as the linear steady state has it."""
-    run = RunState(Model(scene(misalignment, "linear"), ACCURACY), 1.0)
-    linear = run.model.linear_scene()
-    answers = [(h, linear.response(h)) for h in run.segment(0).harmonics()]
-    most, _, closing = steady_extremes(linear, answers, run.period())
-    return min(h - closing - r * most for r, h in run.model.aligned_gaps()) / run.model.clearance
+    model = Model(scene(misalignment, "linear"), ACCURACY)
+    most, _, closing, _ = steady_state(model)[-1]
+    return min(h - closing - r * most for r, h in model.aligned_gaps()) / model.clearance
 
 
 def onset() -> float:

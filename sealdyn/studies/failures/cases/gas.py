@@ -36,7 +36,6 @@ from ....scene.fluid import GasReynolds, gas_of
 from ....solvers.own_methods import D, W
 from . import row
 
-# --- choked gas ---
 # Choked gas flow: marched with the flow, a gas dam's equation is singular where it chokes and repels where it widens.
 #
 #     d(M^2)/dx = 2 M^2 (1 + d M^2) (g f M^2 - h')/((1 - M^2) h),   d = (g - 1)/2
@@ -166,7 +165,6 @@ def show_choked_gas() -> list[dict]:
     )  # fmt: skip
 
 
-# --- trapped gas ---
 # Trapped gas: squeezed faster than it can flow out, a gas film is a spring, whatever it is to slow motion.
 #
 # Between narrow parallel faces at equal pressures p, squeezed at the frequency w, of p A/h
@@ -238,7 +236,6 @@ def show_trapped_gas() -> list[dict]:
     )  # fmt: skip
 
 
-# --- moving cavity ---
 # Cavities that move: Lebeck's seal with three waves, its clearance swinging with the shaft: the cavity behind each
 # crest takes up liquid and gives it back, neither at once nor not at all.
 # **Source** the film about its rest, linearised (dynamics/condensation.py), and the same motion step by step.

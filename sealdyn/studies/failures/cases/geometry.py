@@ -52,7 +52,6 @@ from ....scene.scene import Scene
 from ....simulation.selection import prepare_run
 from . import cruise_dam, integrated, row, run_from
 
-# --- degenerate geometry ---
 # Degenerate geometry: nearly flat faces in logarithmic formulas, zero tilt in Euler coordinates.
 
 # Coning, of the clearance, at which logarithms of film thicknesses cancel.
@@ -181,7 +180,6 @@ def meets_degenerate_geometry(scene, run) -> str:
     return f"its film is {share} of the clearance thicker at one edge than at the other" if apart < FLAT else ""
 
 
-# --- fronts ---
 # Fronts: where a film begins to cavitate its force has a kink that an even grid around the circle never resolves;
 # where it begins to choke, a jump of its second derivative.
 
@@ -273,7 +271,6 @@ def meets_fronts(scene, run) -> str:
     return "film.cavitation_pressure: where the film tears its force has a kink" if floored else ""
 
 
-# --- long runs ---
 # Phases after a million turns, and a tone above half the sampling.
 
 # Turns after which the digits of an angle are worth a thought.

@@ -22,7 +22,6 @@ from ....solvers.fixed_step import REFERENCE_METHODS
 from ....solvers.methods import METHODS
 from . import ZERO_FILM, integrated, row, run_from
 
-# --- neutral stability ---
 # Neutral stability: at the critical speed a whirl neither grows nor decays; what a method makes of it is its own.
 
 # Growth in a turn of the whirl that a method may hide.
@@ -87,7 +86,6 @@ def show_neutral_stability() -> list[dict]:
     return damps + row(1, "Neutral stability: Adams", named("adams", "Adams, tolerance 1e-5,"), kept, words, default)
 
 
-# --- stiff squeeze ---
 # Stiff squeeze film: flat faces at 1 % of their clearance, where damping is a million times that of the design.
 
 CLEARANCE, STIFF_ACCURACY, STIFF_BUDGET = 1e-5, 1e-6, 20_000
@@ -128,7 +126,6 @@ def show_stiff_squeeze() -> list[dict]:
     )  # fmt: skip
 
 
-# --- touch between steps ---
 # Touch: a gap that closes for four degrees of each turn, between the steps of a solver that has no reason to look.
 
 TOUCH_TURNS, TOLERANCE, HALF = 300, 1e-4, math.radians(2)
@@ -189,7 +186,6 @@ def show_touch_between_steps() -> list[dict]:
     )  # fmt: skip
 
 
-# --- coulomb friction ---
 # Coulomb friction: a ring that rubs itself to rest; a smoothed sign of the sliding speed lets it creep away.
 
 FRICTION, START, CYCLES, COULOMB_ACCURACY = 0.31, 5e-6, 12, 1e-6
@@ -231,7 +227,6 @@ def show_coulomb_friction() -> list[dict]:
     )  # fmt: skip
 
 
-# --- vanishing inertia ---
 # Vanishing inertia: a lighter ring decays ever faster towards the same motion, and without inertia has no rates.
 
 VANISHING_TURNS, VANISHING_ACCURACY, LIGHT, VANISHING_BUDGET = 2, 1e-6, 1e-7, 60_000
@@ -296,7 +291,6 @@ def show_vanishing_inertia() -> list[dict]:
     ]  # fmt: skip
 
 
-# --- chaos ---
 # Chaos: two correct runs of a rubbing ring part exponentially; their averages agree.
 
 RAMP, CHAOS_TURNS, SETTLED, PER_TURN, ACCURACIES = 0.05, 130, 40, 16, (1e-5, 1e-7)
