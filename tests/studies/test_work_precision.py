@@ -142,6 +142,13 @@ def test_what_fails_stays_as_a_cross_with_its_reason(tmp_path):
     assert answer["judge_error"]["over_time"] < 1e-10
 
 
+def test_no_judge_is_held_against_itself():
+    """Tolerances end at the tightest: asked for more, two judges were one run, apart by nothing."""
+    asked = scenario("gas_reynolds_reference", "run.accuracy=1e-9")
+    judges = study._sharper(asked, study.ready(asked))
+    assert len(judges) == len(set(judges)) > 1
+
+
 # Measured: 2e-11 to 2.8e-6, by whether a sample falls between the captures that two methods find, which rounding
 # decides; 1.7e-2 where the speed just before a capture was interpolated with the fading friction's slope.
 @pytest.mark.slow

@@ -217,12 +217,13 @@ def _others(run) -> list[tuple[str, float]]:
 
 
 def _sharper(scenario, run) -> list[tuple[str, float]]:
-    """Judges at tolerances far below the scenario's accuracy."""
+    """Judges at tolerances far below the scenario's accuracy, each once."""
     trials = [(choose_method(run)[0], share) for share in SHARP]
     if _can(run, "radau"):
         method = trials[0][0]
         trials = [(method, SHARPEST), ("radau", SHARPEST), trials[0], ("radau", SHARP[0]), *trials[1:]]
-    return [(name, max(share * scenario.run.accuracy, TIGHT)) for name, share in trials]
+    # Beyond the tightest tolerance two would be one.
+    return list(dict.fromkeys((name, max(share * scenario.run.accuracy, TIGHT)) for name, share in trials))
 
 
 def judge(scenario, exact, judges: dict, point: dict) -> dict:
