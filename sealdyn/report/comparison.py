@@ -8,7 +8,7 @@ import numpy as np
 from ..archive import ArchiveError, column, is_study, read_info
 from ..quantities import in_words, number, reading_in, shown_in
 from .summary import BELOW, is_below, is_radial, tilt_resolved
-from .text import speed_unit
+from .text import dotted, speed_unit
 
 # Of the larger value: what differs by less differs by rounding.
 ROUNDING = 1e-12
@@ -62,7 +62,7 @@ def comparison(one, other) -> dict:
     if is_radial(infos[0]) != is_radial(infos[1]):
         kinds = ["a radial seal" if is_radial(info) else "a face seal" for info in infos]
         raise ArchiveError(f"{other}: the archive of {kinds[1]}; expected that of {kinds[0]}, as {one}")
-    scenes, summaries = ([dict(_leaves(info[key])) for info in infos] for key in ("resolved", "summary"))
+    scenes, summaries = ([dict(dotted(info[key])) for info in infos] for key in ("resolved", "summary"))
     return {
         "names": [str(one), str(other)],
         "status": [str(info["status"]) for info in infos],
@@ -138,15 +138,6 @@ def _read(path) -> dict:
     if not info["summary"]:
         raise ArchiveError(f"{path}: the run is not complete ({info['status']})")
     return info
-
-
-def _leaves(tree, name="") -> Iterator[tuple[str, object]]:
-    """Dotted keys and values."""
-    if isinstance(tree, dict):
-        for key, value in tree.items():
-            yield from _leaves(value, f"{name}.{key}" if name else key)
-    else:
-        yield name, tree
 
 
 def _different(one: dict, other: dict) -> list[dict]:

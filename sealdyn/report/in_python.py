@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .summary import run_answer
-from .text import line_words, lines, study_lines, table_columns
+from .text import dotted, line_words, lines, study_lines, table_columns
 
 if TYPE_CHECKING:
     from .charts.page import Figure
@@ -103,12 +103,5 @@ def study_html(answer: dict[str, Any]) -> str:
 
 def keys_html(tables: Mapping[str, Any], caption: str) -> str:
     """Tables of a scenario as they were written, a row for each key."""
-    return html_table(_rows(tables), ("key", "value"), caption)
-
-
-def _rows(tables: Mapping[str, Any], path: str = "") -> Iterable[tuple[str, str]]:
-    for key, value in tables.items():
-        if isinstance(value, Mapping) and value:
-            yield from _rows(value, f"{path}{key}.")
-        else:
-            yield f"{path}{key}", str(value)
+    rows = [(key, str(value)) for key, value in dotted(tables, lambda table: not table)]
+    return html_table(rows, ("key", "value"), caption)

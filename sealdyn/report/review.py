@@ -3,14 +3,13 @@ number of archives, with nothing loaded from elsewhere.  Figures are enlarged an
 
 import importlib
 import re
-from collections.abc import Iterator
 from pathlib import Path
 
 from ..answers import toml_line
 from ..archive import is_study, read_info, read_study
 from ..quantities import printed, reading_in
 from .summary import is_radial, run_answer
-from .text import line_words, question_of, solvers_words, table_columns, written_units
+from .text import dotted, is_over_time, line_words, question_of, solvers_words, table_columns, written_units
 
 TEMPLATE = Path(__file__).with_name("review.html")
 # Figures of a run and what they show.
@@ -144,7 +143,7 @@ def _part(path: Path, info: dict, kind: str, status, **own) -> dict:
     empty = dict.fromkeys(("rows", "warnings", "rules", "validation", "verdict", "tables"), ())
     return {
         **empty, "film": "", "kind": kind, "name": info["name"], **_asked(info), "status": str(status),
-        "scene": list(_scene(info["resolved"])), "scenario": info["scenario"], "made": _made(path, info), **own,
+        "scene": _scene(info["resolved"]), "scenario": info["scenario"], "made": _made(path, info), **own,
     }  # fmt: skip
 
 
@@ -169,14 +168,10 @@ def _drawn(path: Path, chart: str) -> tuple[str, str]:
     return svg_of(importlib.import_module(f"{__package__}.{chart}").draw(path, None))
 
 
-def _scene(table: dict, name: str = "") -> Iterator[tuple[str, str]]:
+def _scene(tables: dict) -> list[tuple[str, str]]:
     """Keys and values in SI, what is not given left out."""
-    for key, value in table.items():
-        where = f"{name}.{key}" if name else key
-        if isinstance(value, dict) and set(value) != {"time", "value"}:
-            yield from _scene(value, where)
-        elif value is not None and value != []:
-            yield where, toml_line(value)
+    given = dotted(tables, is_over_time)
+    return [(key, toml_line(value)) for key, value in given if value is not None and value != []]
 
 
 def _made(path: Path, info: dict) -> list[tuple[str, str]]:

@@ -2,7 +2,8 @@
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
 
 from ..answers import toml_line
 from ..kernel_cache import solvers_digest
@@ -86,6 +87,23 @@ def speed_unit(info: dict) -> tuple[str, float]:
     """The same of speeds, and how many of it make one rad/s."""
     with reading_in(written_units(info)):
         return shown_in("speed")
+
+
+def dotted(
+    tree: Mapping[str, Any], ends: Callable[[Mapping], bool] = lambda table: False, name: str = ""
+) -> Iterator[tuple[str, Any]]:
+    """Dotted keys and values of tables within tables; a table that `ends` the way is a value itself."""
+    for key, value in tree.items():
+        where = f"{name}.{key}" if name else key
+        if isinstance(value, Mapping) and not ends(value):
+            yield from dotted(value, ends, where)
+        else:
+            yield where, value
+
+
+def is_over_time(table: Mapping) -> bool:
+    """Whether a resolved table is a quantity that changes with time."""
+    return set(table) == {"time", "value"}
 
 
 def _table(title, status, message, rows) -> list[str]:
@@ -175,7 +193,7 @@ def _rule_lines(rows) -> list[str]:
 def _table_lines(name, value):
     if not isinstance(value, dict):
         return [] if value is None or value == [] else [f"{name} = {toml_line(value)}"]
-    plain = {k: v for k, v in value.items() if not isinstance(v, dict) or set(v) == {"time", "value"}}
+    plain = {k: v for k, v in value.items() if not isinstance(v, dict) or is_over_time(v)}
     out = [f"[{name}]"] if any(v is not None and v != [] for v in plain.values()) else []
     out += [f"{k} = {toml_line(v)}" for k, v in plain.items() if v is not None and v != []]
     for k, v in value.items():

@@ -185,7 +185,6 @@ class FilmComparison:
     def errors(self, moved) -> np.ndarray:
         """Largest change (2,) by displacements and rates `moved` (m, 2 n) at the states last seen: of the film at the
         outer radius in clearances, of the leakage relative to its largest."""
-        # Kernels of fixed signature are made ready by their import.
         linear, model, n = self.linear, self.segment.model, len(self.linear.mass)
         x, v = (
             sum(linear.rings[k].sign * part[:, 3 * a : 3 * a + 3] for a, k in enumerate(linear.floating))

@@ -20,6 +20,7 @@ from .. import __version__
 from ..archive.files import mark_sound
 from ..extensions import digest
 from ..kernel_cache import solvers_digest
+from ..report.text import dotted
 from ..scenario.errors import nearest_of
 from ..scenario.tables import outside_of
 from ..scene.radial import RadialScene
@@ -192,7 +193,7 @@ def output(parts: dict, key: str):
     for name in key.split("."):
         place = place() if callable(place) else place
         if not isinstance(place, dict) or name not in place:
-            known = [*leaves(plain(parts)), *(f"stability.{speeds}" for speeds in SPEEDS)]
+            known = [*dict(dotted(plain(parts))), *(f"stability.{speeds}" for speeds in SPEEDS)]
             raise ValueError(f"the run's summary has no {key}{nearest_of(key, known, 0.3)}")
         place = place[name]
     place = plain(place)
@@ -209,14 +210,6 @@ def missing_outputs(parts: dict, keys) -> dict[str, str]:
             output(parts, key)
         except ValueError as error:
             found[key] = str(error)
-    return found
-
-
-def leaves(tree: dict, key: str = "") -> list[str]:
-    """Dotted keys of all values."""
-    found = []
-    for name, below in tree.items():
-        found += leaves(below, f"{key}{name}.") if isinstance(below, dict) else [f"{key}{name}"]
     return found
 
 

@@ -9,12 +9,13 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from ..report.text import dotted
 from ..scenario.errors import scene_errors_of
 from ..scenario.reader import Scenario, scenario_of, with_values
 from ..scene.radial import RadialScene
 from ..status import Status
 from .batch import MOMENT, refuse_outputs, run_many
-from .result import Result, leaves, output, plain, unit_of
+from .result import Result, plain, unit_of
 from .simulate import in_memory, simulate
 
 # Tables of a summary that not every run has.
@@ -86,7 +87,7 @@ def list_outputs(
     scenario = scenario_of(source, overrides)
     with scene_errors_of(scenario.name):
         summary = plain(in_memory(with_values(scenario, {"run.duration": MOMENT}), lowest=False))
-    found = {key: output(summary, key) for key in leaves(summary)}
+    found = dict(dotted(summary))
     if not isinstance(scenario.scene, RadialScene):
         # Only found where it is asked for.
         found["stability.critical_speed"] = None

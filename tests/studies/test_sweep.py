@@ -12,10 +12,11 @@ from killed import COMMAND, kill_midway, mark_first
 
 import sealdyn
 from sealdyn.archive import as_dataset
+from sealdyn.report.text import dotted
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.scenario.settings import axis, with_own_unit
-from sealdyn.simulation.result import leaves, unit_of
+from sealdyn.simulation.result import unit_of
 from sealdyn.simulation.simulate import simulate, simulate_in_memory
 from sealdyn.studies import sweep as study
 from sealdyn.studies._runner import run_study
@@ -100,7 +101,7 @@ def test_tables_have_every_point_and_the_range_of_every_output(tmp_path):
 
 def test_outputs_have_units():
     summary = simulate_in_memory(parse_scenario(PATH.read_text(), "one", SHORT), speeds=True)
-    flat = {key: summary for key in leaves(summary)}
+    flat = {key: summary for key in dict(dotted(summary))}
     for key in flat:
         for name in key.split("."):
             flat[key] = flat[key][name]

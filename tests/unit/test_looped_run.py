@@ -9,11 +9,12 @@ from command import SCENARIOS
 
 import sealdyn
 from sealdyn.dynamics.tally import Tally
+from sealdyn.report.text import dotted
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import read_scenario, with_values
 from sealdyn.simulation import batch
 from sealdyn.simulation.batch import TALLIED, LoopedRun, NotTallied, integrate, run_many
-from sealdyn.simulation.result import leaves, output, plain
+from sealdyn.simulation.result import output, plain
 from sealdyn.simulation.simulate import in_memory, prepare_run, simulate_in_memory
 from sealdyn.simulation.summary import parts
 from sealdyn.simulation.verification_run import ProgressSink
@@ -133,7 +134,7 @@ def test_means_are_taken_only_where_they_are_asked_for():
     with pytest.raises(NotTallied):
         output(lean.parts(), "leakage.mean")
     assert output(lean.parts(), "stability.verdict") == "stable"
-    for key in leaves(plain(in_memory(lean.scenario))):
+    for key in dict(dotted(plain(in_memory(lean.scenario)))):
         try:
             output(lean.parts(), key)
         except NotTallied:

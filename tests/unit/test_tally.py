@@ -7,8 +7,9 @@ from scipy.integrate import simpson
 
 import sealdyn
 from sealdyn.numerics.hermite import points
+from sealdyn.report.text import dotted
 from sealdyn.scenario.reader import read_scenario
-from sealdyn.simulation.result import leaves, output
+from sealdyn.simulation.result import output
 
 SCENES = {
     "fms_reference": ["run.turns=3"],
@@ -22,7 +23,7 @@ PARTS = ("leakage.", "friction.", "relative_misalignment.mean", "contact.", "fil
 
 def numbers(summary) -> dict:
     """All numbers of the summary that could come from samples."""
-    return {key: found for key in leaves(summary)
+    return {key: found for key in dict(dotted(summary))
             if key.startswith(PARTS) and isinstance(found := output(summary, key), (int, float))}  # fmt: skip
 
 

@@ -127,12 +127,12 @@ class Run:
         first = int(np.searchsorted(self.turns, self.turns[-1] - amount * (1 + 1e-9)))
         return max(first, self.rows - most_rows, 0)
 
-    def envelope(self, name: str, first: int = 0, points: int = POINTS) -> tuple[np.ndarray, np.ndarray]:
+    def envelope(self, name: str, first: int = 0) -> tuple[np.ndarray, np.ndarray]:
         """Progress and values from row `first`; a long series keeps the smallest and the largest value of
         every stretch, where they are, so no extreme is lost."""
-        if self.rows - first <= points:
+        if self.rows - first <= POINTS:
             return self.progress[first:], self.values(name, first)
-        stretch = -(-(self.rows - first) // (points // 2))
+        stretch = -(-(self.rows - first) // (POINTS // 2))
         kept_x, kept_y = [], []
         for start in range(first, self.rows, stretch * max(1, BLOCK // stretch)):
             values = self.values(name, start, start + stretch * max(1, BLOCK // stretch))
