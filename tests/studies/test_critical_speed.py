@@ -180,8 +180,8 @@ def test_a_whirl_that_takes_too_many_steps_is_given_up(tmp_path, monkeypatch):
     assert all("too many steps" in words for words in answer["growth"]["failed"])
 
 
-def growing_above(least, scene, point):
-    decided = {"rate": 1.0 if point["speed"] > least else -1.0, "decided": True}
+def growing_above(least, scene, speed, **how):
+    decided = {"rate": 1.0 if speed > least else -1.0, "decided": True}
     return {**decided, "eigenvalue": 1.0, "uncertainty": 0.1, "accuracy": 1e-7, "numerical_damping": 0.0}
 
 
@@ -189,14 +189,14 @@ def test_none_is_an_answer_only_where_all_agree(tmp_path, monkeypatch):
     """No eigenvalue crosses: growth in time at every speed confirms it, growth at some speeds only does not."""
 
     for least, status in ((0.0, "ok"), (1000.0, "failed")):
-        monkeypatch.setattr(critical_speed, "growth", partial(growing_above, least))
+        monkeypatch.setattr(critical_speed, "growth_rate", partial(growing_above, least))
         assert study("fmr_reference", tmp_path)["status"] == status
 
 
 def test_speeds_of_no_seal_are_not_run(tmp_path, monkeypatch):
     """Beyond the speed of any face a threshold is told by the eigenvalues alone; that there is none is run up to it."""
     monkeypatch.setattr(critical_speed, "FASTEST", 100.0)
-    monkeypatch.setattr(critical_speed, "growth", partial(growing_above, 0.0))
+    monkeypatch.setattr(critical_speed, "growth_rate", partial(growing_above, 0.0))
     fastest = critical_speed.FASTEST / 0.040
     answer = study("fms_reference", tmp_path)
     assert answer["eigenvalue"] > fastest and answer["status"] == "ok"
