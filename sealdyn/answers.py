@@ -26,6 +26,11 @@ class Table:
     of_rows: Sequence[str] = ()
 
 
+def columns(records: Sequence[Any], names: Sequence[str]) -> dict[str, list]:
+    """What each of the records (None: nothing) has by these names, {name: of all records}."""
+    return {name: [None if record is None else getattr(record, name) for record in records] for name in names}
+
+
 def table_of(name: str, columns: Sequence[tuple[str, str, str]], rows: Sequence[Mapping[str, Any]]) -> Table:
     """A table of rows that are dicts: `columns` of a quantity, a heading, and the key in a row."""
     return Table(name, [column[:2] for column in columns], [[row.get(key) for *_, key in columns] for row in rows])

@@ -16,9 +16,8 @@ from .numerics.piecewise_linear import PiecewiseLinear
 from .unit_names import dimension_and_factor, spelled_like, unknown_unit
 
 NUMBER = re.compile(r"([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,4})?)\s*(.*)", re.DOTALL)
-# Of a table.
-MOST_POINTS = 20_000
-MOST_LISTED = 200_000  # of a list
+# Points of a table and entries of a list, at most.
+MOST_POINTS, MOST_LISTED = 20_000, 200_000
 # A unit of pressure that counts from the air's, "barg", "bar(g)", "psi gauge", and that pressure (Pa).
 GAUGE = re.compile(r"(.+?) ?(?:\([gG]\)|\(?\bgau?ge\b\)?)|(\w*(?:bar|psi|Pa|atm)) ?[gG]")
 AIR = 101325

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..answers import columns
 from ..numerics.piecewise_linear import initially
 from ..scene.fluid import liquid_of
 from .intervals import largest_value
@@ -45,12 +46,12 @@ class HeatedBody:
 
 def heated_body(scene, name: str, cooling: float = 1.0) -> HeatedBody:
     """What the ring called `name` takes of the heat, as given or from its body; its convection times `cooling`."""
-    ring = getattr(scene.film.heat, name)
+    ring = scene.film.heat.rings[name]
     if ring.convection is None:
         return HeatedBody(ring.resistance, ring.coning_per_watt, ring.time_constant)
     from ..faces.ring_heat import RingBody, ring_cooling, ring_heat
 
-    film, body, liquid, cooled = scene.film, getattr(scene, name).body, liquid_of(scene.film), None
+    film, body, liquid, cooled = scene.film, scene.rings[name].body, liquid_of(scene.film), None
     sealed, convection = initially(film.temperature), ring.convection
     outer_is_high = initially(film.outer_pressure) >= initially(film.inner_pressure)
     wet = ring.wet or ("outer" if outer_is_high else "bore")
@@ -103,8 +104,8 @@ class ThermalStates:
         self.time = np.concatenate([whole.time_constants for whole in wholes])
         self.resistance = np.array([body.resistance for body in bodies])[self.ring]
         self.share, self.coning, self.content, self.leaving = (
-            np.concatenate([getattr(whole, name) for whole in wholes]) / self.resistance
-            for name in ("resistances", "conings", "contents", "leaving")
+            np.concatenate(values) / self.resistance
+            for values in columns(wholes, ("resistances", "conings", "contents", "leaving")).values()
         )
         # Of each ring: (W/K) and (rad/K) over the rise of the face beyond that of its states.
         self.immediate = np.array([1.0 / whole.immediate_resistance for whole in wholes])

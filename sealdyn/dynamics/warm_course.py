@@ -15,6 +15,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from ..answers import columns
 from ..numerics.piecewise_linear import PiecewiseLinear, initially
 from ..scene.film import coned
 from ..scene.scene import frozen_at
@@ -54,9 +55,9 @@ class Course:
 
     def at(self, t: float) -> dict:
         """Rise (K), coning by heat (rad), viscosity (Pa s) and the residual of the whole, at a time (s)."""
-        names = {"rise": "rise", "coning_by_heat": "coned_by", "viscosity": "viscosity"}
-        found = {key: np.interp(t, self.time, [getattr(now, of) for now in self.states]) for key, of in names.items()}
-        return {**{key: float(value) for key, value in found.items()}, "energy_residual": self.residual}
+        found = columns(self.states, ("rise", "coned_by", "viscosity"))
+        rise, coning, viscosity = (float(np.interp(t, self.time, values)) for values in found.values())
+        return {"rise": rise, "coning_by_heat": coning, "viscosity": viscosity, "energy_residual": self.residual}
 
 
 def film_between(

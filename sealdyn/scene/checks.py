@@ -19,7 +19,7 @@ from .forces import (
     secondary_seal_errors,
 )
 from .patterns import grooves_errors, grooves_of, waves_of, waviness_errors
-from .rings import OF_MASS, RING_NAMES, body_errors, elastic_errors
+from .rings import OF_MASS, body_errors, elastic_errors
 from .scene import SceneError
 from .sweep import sweep_errors
 from .tabulated import tabulated_errors
@@ -299,7 +299,7 @@ def _secondary_seal(name: str, ring) -> None:
 
 def _seals_alike(scene) -> None:
     """Rings that stick rigidly change their equations in another way than those whose seal gives."""
-    seals = {name: ring.secondary_seal for name in RING_NAMES if (ring := getattr(scene, name)).support}
+    seals = {name: ring.secondary_seal for name, ring in scene.rings.items() if ring.support}
     gives = {name: seal.stiffness is not None for name, seal in seals.items() if seal and seal.law == "coulomb"}
     if len(set(gives.values())) == 2:
         key = next(f"{name}.secondary_seal.stiffness" for name, given in gives.items() if not given)

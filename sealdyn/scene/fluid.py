@@ -391,7 +391,7 @@ class Heat(Strict):
 
 def _body_errors(scene, name: str, ring) -> list[tuple[str, str, str]]:
     """What a ring of a Scene lacks to be reckoned from its body."""
-    body, film = getattr(scene, name).body, scene.film
+    body, film = scene.rings[name].body, scene.film
     if body is None:
         found = f"nothing, with film.heat.{name}.convection"
         return [(f"{name}.body", found, "the ring: inner_radius, outer_radius, length, material")]

@@ -143,9 +143,9 @@ class Grooves(Strict):
 
 def grooves_of(scene) -> tuple[str, tuple[Grooves, ...]]:
     """The ring that has grooves, "rotor" or "stator", and them; "" and none where neither has any."""
-    for name in ("rotor", "stator"):
-        if getattr(scene, name).grooves:
-            return name, tuple(getattr(scene, name).grooves)
+    for name, ring in (("rotor", scene.rotor), ("stator", scene.stator)):
+        if ring.grooves:
+            return name, tuple(ring.grooves)
     return "", ()
 
 

@@ -87,6 +87,11 @@ class Scene(Strict):
     contact: Contact | None = None
     """Asperities; without this table a film that closes ends the run."""
 
+    @property
+    def rings(self) -> dict[str, Stator | Rotor]:
+        """Both rings by their names."""
+        return {"stator": self.stator, "rotor": self.rotor}
+
 
 class SceneError(ValueError):
     """A scene that cannot exist: the key to blame, what was found, what is expected, and the `status` of its run;
@@ -154,9 +159,9 @@ def with_values(scene, values: dict[str, Any]):
     for key, value in values.items():
         scene = _with_value(scene, key.split("."), value, key)
         name, _, below = key.partition(".")
-        if name in RING_NAMES and getattr(scene, name).body:
+        if name in RING_NAMES and scene.rings[name].body:
             # A body's mass follows it; a mass of its own does without the body.
-            ring = getattr(scene, name)
+            ring = scene.rings[name]
             ring = replace(ring, body=None) if below in INERTIAL else with_inertia(ring)
             scene = replace(scene, **{name: ring})
     return scene
@@ -204,7 +209,7 @@ def with_springs_for_seals(scene: Scene) -> tuple[Scene, list[str]]:
 
 def uneven_supports(scene: Scene) -> list[str]:
     """Dotted names of the supports with two different tilt stiffnesses."""
-    return [f"{name}.support" for name in RING_NAMES if (s := getattr(scene, name).support) and s.tilt_difference()]
+    return [f"{name}.support" for name, ring in scene.rings.items() if (s := ring.support) and s.tilt_difference()]
 
 
 def refuse_uneven(scene: Scene) -> None:

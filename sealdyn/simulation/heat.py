@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from ..answers import columns
 from ..dynamics.run_state import Caution, Concern
 from ..dynamics.warm_course import breaks, followed
 from ..dynamics.warm_state import Warming, WarmState, warming
@@ -125,7 +126,7 @@ def _interval(scene) -> dict | None:
     if all(ring.convection is None for ring in scene.film.heat.rings.values()):
         return None
     ends = [warming(scene, cooling).working() for cooling in COOLINGS]
-    return {key: [end and getattr(end, key) for end in ends] for key in ("rise", "coning", "power")}
+    return columns(ends, ("rise", "coning", "power"))
 
 
 def boiling_radius(found: Warming, state: WarmState, times: float = 1.0) -> float | None:

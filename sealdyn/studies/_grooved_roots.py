@@ -68,7 +68,7 @@ def rings_of(scene) -> tuple[Ring, ...]:
     refuse_uneven(scene)
     found = []
     for name, spin in (("stator", scene.stator.speed), ("rotor", scene.shaft.speed)):
-        ring = getattr(scene, name)
+        ring = scene.rings[name]
         if (support := ring.support) is None:
             continue
         if not (ring.mass > 0.0 and ring.transverse_inertia > 0.0):

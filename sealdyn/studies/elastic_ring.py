@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from ..answers import Answer, Axis, Level, Panel, Series, Table, table_of
+from ..answers import Answer, Axis, Level, Panel, Series, Table, columns, table_of
 from ..dynamics.elastic_ring import (
     OperatingPoint,
     harmonic,
@@ -83,7 +83,7 @@ def run(scenario, settings, tools) -> Answer:
         "order": order,
         "initial": initial,
         "compliance": ring.compliance(order),
-        "curve": {name: [getattr(point, name) for point in along] for name in COLUMNS},
+        "curve": columns(along, COLUMNS),
         "points": points,
     }
     return Answer(answer, _found(answer), [_table(answer)], _panels(answer), _notes(answer))

@@ -66,8 +66,9 @@ class Settings:
 
 def run(scenario, settings, tools) -> Answer:
     """Orbit, multipliers, verdict on the nonlinear orbit; against harmonic balance; cost near the threshold."""
-    for key, least in (("turns", 1), ("samples", 2), ("longest", 1)):
-        if (given := getattr(settings, key)) < least:
+    asked = (("turns", settings.turns, 1), ("samples", settings.samples, 2), ("longest", settings.longest, 1))
+    for key, given, least in asked:
+        if given < least:
             raise ScenarioError(scenario.name, f"study.steady_state.{key}", str(given), f"{least} or more")
     try:
         finder = _finder(HarmonicBalance, scenario, settings)

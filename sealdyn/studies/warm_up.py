@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..answers import Answer, Axis, Panel, Series, Table
+from ..answers import Answer, Axis, Panel, Series, Table, columns
 from ..dynamics.warm_course import breaks, course
 from ..dynamics.warm_state import warming
 from ..numerics.piecewise_linear import PiecewiseLinear
@@ -107,7 +107,7 @@ def _numbers(scene, found) -> dict:
     """The numbers of the answer of a Course."""
     return {
         "time": found.time,
-        **{key: [getattr(state, key) for state in found.states] for key in COLUMNS},
+        **columns(found.states, COLUMNS),
         "speed": [float(scene.shaft.speed.at(t)) for t in found.time],
         "heat": found.heat,
         "energy_residual": found.residual,

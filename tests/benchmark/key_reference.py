@@ -1,4 +1,4 @@
-"""scenarios/README.md: every key of a scenario file, every study's settings, every shipped scenario.
+"""scenarios/README.md: every key of a scenario file, every shipped scenario; scenarios/studies.md: settings of studies.
 
     python tests/benchmark/key_reference.py
 
@@ -16,9 +16,9 @@ from sealdyn.studies import study_names
 from sealdyn.studies._declared import about, json_schema, settings_of, time_of
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
-PAGE = SCENARIOS / "README.md"
-# Design rules, vibration and radial seals, in words.
-GUIDE = Path(__file__).parent / "guide.md"
+PAGE, STUDIES = SCENARIOS / "README.md", SCENARIOS / "studies.md"
+# Design rules, vibration and radial seals, in words; runs beside another program.
+GUIDE, BESIDE = (Path(__file__).parent / name for name in ("guide.md", "beside.md"))
 HEAD = """# Scenario files
 
 One TOML file describes a seal and a run.  This page is written by `python tests/benchmark/key_reference.py` from the
@@ -50,6 +50,7 @@ JSON schema (`sealdyn schema`), which editors read too.
   Python.
 - `schema = 1` at the head of a file says which version of these keys it is written in; without it the present one.  A
   file of a newer version is refused in a line that says so.
+- Settings of studies (`[study.NAME]`) and runs beside another program: [studies.md](studies.md).
 - An unknown key is refused; a known key that this seal does not use is listed as `not used`.
 - `[application]` is what the seal is asked to do, for the design rules of `sealdyn check` (below); it
   changes no number of a run.
@@ -57,6 +58,11 @@ JSON schema (`sealdyn schema`), which editors read too.
 """
 
 
+OF_STUDIES = """# Settings of studies, and runs beside another program
+
+Keys of a scenario's table `[study.NAME]`, or flags `--key value` of `sealdyn study NAME`; written by
+`python tests/benchmark/key_reference.py`.
+"""
 SHIPPED = """## Shipped scenarios
 
 What is asked of each; what to expect and from which source stands at the head of its file.
@@ -64,7 +70,7 @@ What is asked of each; what to expect and from which source stands at the head o
 
 
 def page() -> str:
-    """The whole page, markdown."""
+    """The page of keys and scenarios, markdown."""
     parts = [HEAD, SHIPPED, *map(shipped, sorted(SCENARIOS.glob("*.toml")))]
     parts += [*map(shipped, sorted(SCENARIOS.glob("radial/*.toml"))), "\n## Keys\n", *keys(json_schema())]
     parts += [
@@ -74,9 +80,12 @@ def page() -> str:
     radial = json_schema(RadialFile)
     # `[run]` is that of face seals.
     parts += keys({**radial, "properties": {k: v for k, v in radial["properties"].items() if k != "run"}})
-    parts += ["## Settings of studies\n", "Keys of `[study.NAME]`, or flags `--key value` of `sealdyn study`.\n"]
-    parts += [*map(settings, study_names()), GUIDE.read_text()]
-    return "\n".join(parts)
+    return "\n".join([*parts, GUIDE.read_text()])
+
+
+def studies() -> str:
+    """The page of studies, markdown."""
+    return "\n".join([OF_STUDIES, *map(settings, study_names()), BESIDE.read_text()])
 
 
 def keys(schema: dict) -> list[str]:
@@ -147,7 +156,7 @@ def settings(name: str) -> str:
     """What a study is for, how long it takes, and its settings."""
     rows = settings_of(name)
     lines = [f"| `{s.key}` | {s.holds} | {f'`{s.default}`' if s.default else 'none'} | {s.meaning} |" for s in rows]
-    head = f"### `[study.{name.replace('-', '_')}]`\n\n{about(name)}  *Time:* {time_of(name)}.\n"
+    head = f"## `[study.{name.replace('-', '_')}]`\n\n{about(name)}  *Time:* {time_of(name)}.\n"
     table = ["| key | value, SI unit | default | meaning |", "|---|---|---|---|", *lines]
     return "\n".join([head, *table, ""])
 
@@ -159,3 +168,4 @@ def shown(value) -> str:
 
 if __name__ == "__main__":
     PAGE.write_text(page())
+    STUDIES.write_text(studies())

@@ -29,6 +29,12 @@ ORDER = (
     ("cli",),
     ("__init__",),
 )
+# Files of the package, lines of a file but of the one named, lines of all that draws, charts of studies of their own,
+# lines in which a name that is data asks for an attribute, in the rooms of physics and answers.
+MOST_FILES, MOST_LINES, LONGER, MOST_DRAWN, MOST_CHARTS, MOST_ASKED = 250, 450, {"cli.py": 700}, 3500, 4, 15
+ASKED_IN = ("films", "studies", "simulation", "dynamics")
+# Most bytes of a page.
+PAGES = {"README.md": 12, "scenarios/README.md": 60, "outputs/gallery/README.md": 25}
 FLOOR = {room: floor for floor, rooms in enumerate(ORDER) for room in rooms}
 MOST_ROOMS = 25
 # Libraries, and the only folders or files that import them.
@@ -77,6 +83,25 @@ def test_rooms_are_few_and_known():
     rooms = {room(path) for path in FILES}
     assert rooms == set(FLOOR)
     assert len(rooms) <= MOST_ROOMS
+
+
+def test_the_house_is_as_small_as_it_is_said_to_be():
+    """Bounds that grow back, one finding at a time, where nothing holds them."""
+    lines = {path.relative_to(PACKAGE).as_posix(): len(path.read_text().splitlines()) for path in FILES}
+    assert len(lines) <= MOST_FILES
+    assert {name: n for name, n in lines.items() if n > LONGER.get(name, MOST_LINES)} == {}
+    charts = {name: n for name, n in lines.items() if name.startswith(("report/charts/", "report/panels.py"))}
+    assert sum(charts.values()) <= MOST_DRAWN and sum("/study_" in name for name in charts) <= MOST_CHARTS
+    asked = [
+        f"{path.relative_to(PACKAGE)}: {line.strip()}"
+        for path in FILES
+        if room(path) in ASKED_IN
+        for line in path.read_text().splitlines()
+        if re.search(r"\b(has|get)attr\(", line)
+    ]
+    assert len(asked) <= MOST_ASKED, asked
+    for page, most in PAGES.items():
+        assert (PACKAGE.parent / page).stat().st_size <= 1024 * most, page
 
 
 def test_arrows_point_one_way():

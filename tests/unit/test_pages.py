@@ -18,6 +18,10 @@ def test_page_is_what_its_script_writes(made):
     assert made.PAGE.read_text() == made.page()
 
 
+def test_page_of_studies_is_what_its_script_writes():
+    assert key_reference.STUDIES.read_text() == key_reference.studies()
+
+
 def test_gallery_shows_every_picture_and_fills_every_table():
     page = gallery.page()
     assert set(re.findall(r"!\[.*?\]\((.*?)\)", page)) == {path.name for path in gallery.GALLERY.glob("*.png")}

@@ -31,7 +31,7 @@ GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 def with_samples(scene: Scene, run) -> Scene:
     """The scene with samples of the loads that its floating rings name.  Raises SceneError."""
     for name in RING_NAMES:
-        ring = getattr(scene, name)
+        ring = scene.rings[name]
         if ring.load is not None and ring.load.model is not None and ring.support is not None:
             load = dataclasses.replace(ring.load, samples=_samples(scene, f"{name}.load", ring.load, run))
             scene = dataclasses.replace(scene, **{name: dataclasses.replace(ring, load=load)})

@@ -13,7 +13,6 @@ from ...dynamics.run_state import Concern
 from ...faces.geometry import COLLAPSE, TOUCH, smallest_gap
 from ...numerics.time_series import centres, peak, resolution, tracked, waterfall
 from ...scene.excitation import Housing
-from ...scene.rings import RING_NAMES
 from .ramp_run import RampCycle, run_cycle
 
 # A whirl is small below this share of clearance/outer radius: the square of it is lost in the growth.
@@ -42,7 +41,7 @@ class Steady:
 
     def __init__(self, scene):
         # Neither what shakes the housing nor what pulls at the rings goes with the speed.
-        rings = {name: replace(getattr(scene, name), load=None) for name in RING_NAMES}
+        rings = {name: replace(ring, load=None) for name, ring in scene.rings.items()}
         scene = replace(frozen_at_end(scene), housing=Housing(), **rings)
         self.speed = 1.0
         self.model = Model(replace(scene, shaft=replace(scene.shaft, speed=self.speed)))

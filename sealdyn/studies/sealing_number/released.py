@@ -31,7 +31,7 @@ from ...quantities import in_words
 from ...scene.film import coned
 from ...scene.rings import RING_NAMES, ROTOR, STATOR, Rotor, Stator, Support
 from ...scene.scene import Initial, RingStart, Scene, SceneError, refuse_uneven
-from ...simulation.selection import choose_method
+from ...simulation.selection import Start, choose_method, set_start
 from ...solvers.contract import Recorder, Status
 from ...solvers.integrate import solve
 
@@ -169,7 +169,7 @@ def ring_of(scene) -> quasi_static.Ring:
         ),
         ("film.inertia", not f.inertia, "true", "none"),
         ("closing.spring_force", scene.closing.spring_force is not None, none, "a spring force and a balance ratio"),
-        (f"{other}.support", getattr(scene, other).support is None, "two flexible rings", "one of them"),
+        (f"{other}.support", scene.rings[other].support is None, "two flexible rings", "one of them"),
         (f"{name}.support", pair.ring.support is not None, none, "a flexible ring"),
         (f"{name}.secondary_seal", seal is not None, none, "a secondary seal on the ring"),
         (f"{name}.secondary_seal.stiffness", not gives, "one", "none: rigid until it slides"),
@@ -299,13 +299,7 @@ def released(scene, turns: float = 80, last: float = 4, accuracy: float = 1e-3, 
     ring = ring_of(scene)
     turn = 2 * math.pi / ring.shaft_speed
     run = RunState(Model(scene, accuracy), turns * turn)
-    unknowns, name = run.model.unknowns, pair_of(scene).name
-    start = getattr(scene.initial, name)
-    for part in ("z", "tilt_x", "tilt_y"):
-        at = unknowns.names.index(f"{name}_{part}")
-        run.y0[at] = getattr(start, part) or 0.0
-        run.y0[unknowns.rate_places[at]] = getattr(start, f"{part}_rate") or 0.0
-    run.check_start()
+    set_start(run, scene, Start("rest"))
     sink = Kept(turn / SAMPLES)
     outcome = solve(run, method or choose_method(run)[0], accuracy, sink)
     series = {name: np.concatenate([part[name] for part in sink.parts]) for name in sink.parts[0]}

@@ -24,7 +24,7 @@ from ...scenario.settings import axis
 from ...scenario.tables import kind_of_scene
 from ...scene.excitation import Housing, Shaft
 from ...scene.patterns import grooves_of
-from ...scene.scene import SceneError, arrangement, frozen_at_start
+from ...scene.scene import SceneError, arrangement, frozen_at_start, part
 from ...simulation.selection import choose_method
 from ...simulation.stability import critical_speed, speeds_held, whirl_ratio
 from ...units import quantity_of
@@ -176,9 +176,10 @@ def _here(scene, key: str) -> float | None:
     if key == INERTIA_RATIO:
         ring = scene.rotor if scene.rotor.support else scene.stator
         return ring.transverse_inertia / ring.polar_inertia if ring.polar_inertia else None
-    value = scene
-    for step in key.split("."):
-        value = getattr(value, step, None)
+    try:
+        value = part(scene, key)
+    except (AttributeError, IndexError, ValueError):
+        return None
     return float(value) if isinstance(value, int | float) else None
 
 

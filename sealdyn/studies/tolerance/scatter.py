@@ -116,7 +116,7 @@ class _Entry:
         if quantity and quantity.example:
             return quantity
         # A number with or without what is usual of it.
-        if quantity or any(float in (k, getattr(k, "__origin__", None)) for k in (kind, *typing.get_args(kind))):
+        if quantity or any(float in (k, typing.get_origin(k)) for k in (kind, *typing.get_args(kind))):
             return None
         raise self.wrong(f"{self.key}, which holds no number", "a key that holds a number, with or without unit")
 

@@ -43,7 +43,7 @@ FORMULAS = {"fmr": (cf.fmr_static, cf.fmr_dynamic), "fms": (cf.fms_static, cf.fm
 def arranged(scene: Scene, name: str) -> Scene:
     """A scene as one arrangement (of SEALS); grooves stay in the face that has them, whichever ring floats."""
     found = with_both_flexible_rings(scene) if name == "fmsr" else with_single_flexible_ring(scene, name.upper())
-    grooves = {ring: replace(getattr(found, ring), grooves=getattr(scene, ring).grooves) for ring in RING_NAMES}
+    grooves = {ring: replace(found.rings[ring], grooves=scene.rings[ring].grooves) for ring in RING_NAMES}
     return replace(found, **grooves)
 
 
@@ -359,7 +359,7 @@ class OverGrooves(Arrangement):
 
         motions = self.roots.film(speed)[2]
         rings = rings_of(frozen_at_start(self.scene, speed=speed))
-        floats = [name for name in ("stator", "rotor") if getattr(self.scene, name).support is not None]
+        floats = [name for name, ring in self.scene.rings.items() if ring.support is not None]
 
         def answers(motion):
             found = []
