@@ -96,7 +96,8 @@ def narrow_seal(f, s, normal):
             # Counted from the thinnest place.
             cos_b = math.cos(angle)
             h_i = regularised_thickness(f[CLEARANCE] + s[DZ] - swing_i * cos_b, floor)
-            h_o = regularised_thickness(f[CLEARANCE] + s[DZ] + f[CONING] * width - swing_o * cos_b, floor)
+            coned = (f[CONING] + s[CONING_CHANGE]) * width
+            h_o = regularised_thickness(f[CLEARANCE] + s[DZ] + coned - swing_o * cos_b, floor)
         else:
             h_i = regularised_thickness(film_thickness(f, s, r_i, angle), floor)
             h_o = regularised_thickness(film_thickness(f, s, r_o, angle), floor)
