@@ -449,7 +449,7 @@ def test_closed_forms_in_words_and_at_their_edges():
     scene = ramped("segments")
     followers, shaft = followers_of(scene), scene.shaft
     preload, needed, largest = (
-        words for words in re.findall(r"[\d.e+-]+(?= N/m| mm)", " ".join(closed_form_sentences(followers, shaft)))
+        words for words in re.findall(r"[\d.e+-]+(?= N/m| um)", " ".join(closed_form_sentences(followers, shaft)))
     )
     arc = 2 * math.pi * R / 12
     assert float(preload) == pytest.approx(4 * math.sin(math.pi / 12) / arc, rel=1e-3)
@@ -457,7 +457,7 @@ def test_closed_forms_in_words_and_at_their_edges():
     angles = np.linspace(0, 2 * np.pi, 100_001)
     inertia = sum(0.005 * (n * 500.0) ** 2 * a * np.cos(n * angles - phase) for n, a, phase in WAVES)
     assert float(needed) == pytest.approx((inertia.max() + 0.025) / arc, rel=1e-3)
-    assert float(largest) == pytest.approx(1e3 * (4 * math.sin(math.pi / 12) - 0.025) / (0.005 * 500.0**2), rel=1e-3)
+    assert float(largest) == pytest.approx(1e6 * (4 * math.sin(math.pi / 12) - 0.025) / (0.005 * 500.0**2), rel=1e-3)
     assert needed_preload(followers, shaft, 500.0) == pytest.approx(float(needed) * arc, rel=1e-3)
     soft = followers_of(RadialScene(shaft, circumferential=Circumferential(0.06, 12, 0.01, axial_force=1.2,
                                                                            flange_friction=0.25)))  # fmt: skip
