@@ -162,7 +162,7 @@ class HarmonicBalance:
                     found[k] = np.nan
                     continue
             if len(self.heavy) == self.n:
-                (self.segment.ring_rates if film else self.segment.rhs)(tau, y, yp)
+                self.segment.ring_rates(tau, y, yp)
                 found[k] = accelerations[k] - yp[self.places]
                 continue
             yp[: self.n] = rates[k]

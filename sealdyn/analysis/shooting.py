@@ -287,9 +287,8 @@ class ForcedWave:
     def _unbalance(self, x):
         """Accelerations left over (n,), scaled; not numbers where the film has no solution."""
         q, yp = x * self.scales, np.empty(self.segment.size)
-        rates = self.segment.rhs if self.model.interface.unknowns is None else self.segment.ring_rates
         try:
-            rates(0.0, self.state(q), yp)
+            self.segment.ring_rates(0.0, self.state(q), yp)
         except SceneError:
             return np.full(len(x), np.nan)
         self.work += 1
