@@ -108,7 +108,7 @@ def test_a_large_run_is_told_and_not_begun(override, key, tmp_path):
 
 def test_a_run_beyond_any_machine_is_not_begun_whatever_is_said(tmp_path):
     code, _, (line,) = said("run", str(SEAL), "--set", "run.turns=1e14", "--yes", "--out", str(tmp_path / "a.h5"))
-    assert code == 2 and "years" in line and "--yes" not in line
+    assert code == 2 and "GB, at least 5600000 h" in line and "--yes" not in line
     with pytest.raises(SceneError):
         simulate(read_scenario(SEAL, ["run.turns=1e14"]), tmp_path / "a.h5", allow_large=True)
 

@@ -14,7 +14,6 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
-from command import SCENARIOS
 
 import sealdyn
 from sealdyn.numerics import cluster as cluster_module
@@ -25,7 +24,8 @@ from sealdyn.simulation.batch import run_many
 from sealdyn.simulation.result import COMMON
 from sealdyn.studies._runner import run_study
 
-PATH = SCENARIOS / "fms_reference.toml"
+# Workers import this file: it takes nothing from the modules beside the tests.
+PATH = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
 SHORT = ["run.turns=6", 'run.start="steady"']
 VARY = "rotor.runout=10:60 urad:6"
 IMPORTS = os.pathsep.join([str(Path(sealdyn.__file__).parents[1]), str(Path(__file__).parent)])
