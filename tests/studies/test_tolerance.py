@@ -98,6 +98,14 @@ def test_distributions_as_written(words, law):
     assert found.unit == ("rad" if "runout" in words else "")
 
 
+def test_pure_numbers_that_may_be_left_out_scatter():
+    """A balance ratio and a friction coefficient are numbers without a unit, or nothing."""
+    given = parse_scenario((SCENARIOS / "tolerance.toml").read_text(), "seal")
+    found = read_scatter(given, ["closing.balance_ratio=normal(+- 0.03)", "contact.friction_coefficient=normal(10 %)"])
+    assert [one.law.std() for one in found] == pytest.approx([0.01, 0.01], rel=1e-12)
+    assert [one.unit for one in found] == ["", ""]
+
+
 BAD = [
     ("rotor.runuot=normal(1 urad)", "rotor.runuot", "nearest 'runout'"),
     ("rotr.runout=normal(1 urad)", "rotr.runout", "[rotor]"),

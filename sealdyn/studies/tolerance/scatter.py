@@ -109,14 +109,14 @@ class _Entry:
         last = radius_key(kind, self.key).rpartition(".")[2]
         try:
             owner = scenes.part(self.scenario.scene, table) if table else self.scenario.scene
-            kind = typing.get_type_hints(type(owner), include_extras=True)[last]
+            kind, plain = (typing.get_type_hints(type(owner), include_extras=extras)[last] for extras in (True, False))
         except (AttributeError, IndexError, KeyError, ValueError):
             raise self.wrong(f"{self.key}", f"a key of a table that the scenario has: no {table}") from None
         quantity = quantity_of(kind)
         if quantity and quantity.example:
             return quantity
         # A number with or without what is usual of it.
-        if quantity or any(float in (k, typing.get_origin(k)) for k in (kind, *typing.get_args(kind))):
+        if quantity or float in (plain, *typing.get_args(plain)):
             return None
         raise self.wrong(f"{self.key}, which holds no number", "a key that holds a number, with or without unit")
 
