@@ -14,6 +14,8 @@ from sealdyn.scenario.tables import Run
 from sealdyn.simulation.simulate import simulate
 
 SEALED = ("stator.secondary_seal.radius=45 mm", "stator.secondary_seal.line_friction=40 N/m")
+# Followers leave the shaft and come back, also at the instants where it is stopped.
+THROWN = ("run.turns=3", "shaft.eccentricity=0.3 mm")
 # A scene each: one method's history, changes of the equations, fields, a film of unknowns, tries, a radial seal.
 CASES = {
     "adams": ("fms_reference", ("run.solver=adams", "run.turns=30"), [2, 3]),
@@ -28,7 +30,7 @@ CASES = {
     "a sweep": ("housing_sweep", ("run.duration=0.1",), [1, 1]),
     "conditions that change": ("runup_through_critical", (), [5, 8]),
     "done again, sharper": ("squeeze", (), [1, 8, 12]),
-    "a seal around the shaft": ("radial/circumferential_reference", (), [1]),
+    "a seal around the shaft": ("radial/circumferential_reference", THROWN, [20, 80]),
 }
 
 
