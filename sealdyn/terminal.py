@@ -398,5 +398,8 @@ def _refuse(status: str, message: str, as_json: bool, errors=()):
             {"message": line, "key": error.key, "found": error.found, "expected": error.expected}
             for line, error in zip(lines, errors, strict=True)
         ]
-    print(json.dumps(told)) if as_json else say(*lines, error=True)
+    if as_json:
+        print(json.dumps(told))
+    else:
+        say(*lines, error=True)
     sys.exit(EXIT[status])
