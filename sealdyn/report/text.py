@@ -59,21 +59,28 @@ READ_LIKE = {
     "radius": ("m", ("radius",)),
     "diameter": ("m", ("radius",)),
     "pressure": ("Pa", ("pressure", "Pa")),
+    "pressure_difference": ("Pa", ("pressure", "Pa")),
     "runout": ("rad", ("tilt", "misalignment")),
     "misalignment": ("rad", ("tilt", "misalignment")),
     "speed": ("rad/s", ("rad/s",)),
 }
 # The last word of such a key, and the unit of its value, or of the values in its table over time.
 WRITTEN = re.compile(
-    rf"""^[^#\n]*?({"|".join(READ_LIKE)})["']?\s*=[^#\n"']*["'][^"'\n]*?\d\s*([A-Za-z][\w/]*)""", re.MULTILINE
+    rf"""^[^#\n]*?({"|".join(READ_LIKE)})["']?\s*=(?:\s*\{{\s*time\s*=\s*\[[^\]\n]*\])?"""
+    r"""[^#\n"']*["'][^"'\n]*?\d\s*([A-Za-z][\w/]*)""",
+    re.MULTILINE,
 )
+# An override's value without quotes, no list and no table.
+BARE = re.compile(r"""=\s*([^"'\[{\n]+)$""")
 
 
 def written_units(info: dict) -> dict[str, str]:
     """{quantity or SI unit: unit} in which a run or study has what may be read in several: speeds in "rpm" where its
     scenario or command line has them so, else in "rad/s"; pressures, clearances, radii and tilts as they are written,
     where that is no unit of those by size."""
-    words = "\n".join([info.get("scenario") or "", *map(str, info.get("overrides") or [])])
+    # A shell takes the quotes of an override away.
+    overrides = (BARE.sub(r'="\1"', str(override)) for override in info.get("overrides") or [])
+    words = "\n".join([info.get("scenario") or "", *overrides])
     rpm, found = False, dict[str, str]()
     for key, unit in WRITTEN.findall(words):
         si, names = READ_LIKE[key]

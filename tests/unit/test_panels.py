@@ -91,6 +91,10 @@ def test_factors_of_the_table_are_those_of_the_parser():
          {"pressure": "psi", "clearance": "mil", "h_min": "mil", "rad/s": "rpm"}),
         ('speed = { time = [0, 1], value = ["1 rpm", "2 rpm"] }\nrunout = "20 um TIR"\nouter_diameter = "3 in"\n',
          ['rotor.runout="0.01 deg"'], {"rad/s": "rpm", "tilt": "deg", "radius": "in"}),
+        # Times with a unit stand before the values.
+        ('speed = { time = ["0 s", "1 s"], value = ["1 rpm", "2 rpm"] }\n', [], {"rad/s": "rpm"}),
+        ("", ["film.outer_pressure=70 psig", "shaft.speed=9000 rpm"], {"Pa": "psi", "rad/s": "rpm"}),
+        ('pressure_difference = "3 psi"\n', [], {"Pa": "psi", "rad/s": "rad/s"}),
         ('# speed = "100 rpm", clearance = "1 mil"\nclearance = 1e-5\n', [], {"rad/s": "rad/s"}),
     ],
 )  # fmt: skip
