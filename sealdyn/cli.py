@@ -216,13 +216,16 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
     """Read a scenario, say what is wrong with it or print it resolved to SI."""
     from .analysis.desk import checked
     from .archive import ArchiveError
-    from .report.text import resolved_lines
+    from .quantities import reading_in
+    from .report.text import resolved_lines, written_units
     from .scene.scene import SceneError
     from .simulation.plausibility import size_of
 
     scenario = _read(file, set)
     odd = _refuse_settings(scenario) if scenario.study else []
-    with Progress() as bar:
+    written = written_units({"scenario": scenario.text, "overrides": scenario.overrides})
+    # The sentences of its rules and warnings have numbers, too.
+    with Progress() as bar, reading_in(written):
         try:
             found = checked(scenario)
         except (SceneError, ArchiveError) as error:
@@ -232,7 +235,8 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
     if as_json:
         print(json.dumps(found))
     else:
-        say(*resolved_lines(found))
+        with reading_in(written):
+            say(*resolved_lines(found))
         if (size := size_of(scenario)).bytes > WORTH_SAYING:
             say(f"  size          {size}")
 

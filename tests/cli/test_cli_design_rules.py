@@ -134,3 +134,14 @@ def test_check_prints_the_lines_of_the_readme(tmp_path):
     printed = sealdyn("check", "pump.toml", cwd=tmp_path).out.splitlines()
     said = re.search(r"```text\n(# design rules.*?)```", page, re.DOTALL)[1].splitlines()
     assert set(said) - {"..."} <= set(printed)
+
+
+def test_numbers_of_rules_and_warnings_are_in_the_units_of_the_scenario(tmp_path):
+    # At this speed the inertia of the film counts, which a pressure says.
+    seal = (REFERENCE, "--set", "film.outer_pressure=70 psig", "--set", "closing.spring_force=40 N",
+            "--set", "shaft.speed=30000 rpm")  # fmt: skip
+    done = sealdyn("check", *seal, "--json", cwd=tmp_path)
+    assert done.code == 0
+    sentences = [verdicts(done)[rule]["said"] for rule in ("balance", "face_pressure")]
+    for sentence in [*sentences, " ".join(done.found["warnings"])]:
+        assert re.search(r"\d psi\b", sentence) and not re.search(r"\d bar\b", sentence)
