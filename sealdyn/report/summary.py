@@ -262,8 +262,9 @@ def _seal_lines(seals) -> Iterator[Line]:
                             ("the first of it", seal["gives"], "travel")])  # fmt: skip
     if seals["sticks"] is not None:
         held = ", ".join(seals["stuck_at_end"])
-        yield Line("", [("stuck, times", seals["sticks"], "1"), ("slipped, times", seals["slips"], "1"),
-                        (f"at the end {f'stuck: {held}' if held else 'sliding'}", None, "")])  # fmt: skip
+        times = ("times", None, "")
+        yield Line("", [("stuck", seals["sticks"], "1"), times, ("slipped", seals["slips"], "1"), times,
+                        (f"stuck at the end: {held}" if held else "sliding at the end", None, "")])  # fmt: skip
 
 
 def _stability_lines(stability) -> Iterator[Line]:
@@ -316,7 +317,8 @@ def _radial_lines(summary) -> Iterator[Line]:
     kind, arc = "sectors of a lip" if summary["seal"] == "lip" else "segments", one["arc"]
     yield Line("model", [(f"{model['followers']} {kind}, {model['solver']}", None, "")])
     yield from _computation(model, summary["counts"], summary["wall_time"])
-    yield Line("follower", [("preload", one["preload"] / arc, "N/m"), ("stiffness", one["stiffness"] / arc, "N/m^2"),
+    yield Line("follower", [("preload", one["preload"] / arc, "N/m"),
+                            ("stiffness", one["stiffness"] / arc, "N/m^2"),
                             ("mass", one["mass"] / arc, "kg/m"), ("flange friction", one["friction"], "force")],
                detail=True)  # fmt: skip
     yield from _riding_lines(summary["whole"], summary["settled"], summary["contact"])

@@ -22,7 +22,7 @@ def lines(name: str, answer, verbose: bool = False) -> list[str]:
 
 
 # With these words a part goes on with the one before it.
-JOINED = ("to", "at", "or", "times")
+JOINED = ("to", "at", "or", "and", "times")
 
 
 def line_words(line) -> str:

@@ -13,7 +13,7 @@ from sealdyn.archive import column, read_info
 from sealdyn.dynamics.signals import signals
 from sealdyn.quantities import in_words
 from sealdyn.report.charts import overview
-from sealdyn.report.summary import run_answer
+from sealdyn.report.summary import _seal_lines, run_answer
 from sealdyn.report.text import line_words, lines
 from sealdyn.scenario.reader import parse_scenario, read_scenario
 from sealdyn.scene.fluid import density_of, gas_of
@@ -324,3 +324,13 @@ def test_the_sheet_tells_no_misalignment_below_the_accuracy():
     summary = {"accuracy": 2e-3, "film": {"clearance": 1e-5}, "h_min": {"radius": 0.04},
                "relative_misalignment": {"max": 9.78e-8, "min": 0.0, "mean": 2e-6}}  # fmt: skip
     assert dict(overview._numbers(summary))["tilt max / min / mean"] == "<0.5 / 0 / 2 µrad"
+
+
+@pytest.mark.parametrize("held", [[], ["axial"]])
+def test_parts_of_a_line_are_apart_or_go_on(held):
+    """Counts of a secondary seal and what it does at the end are three parts, two of a range one."""
+    ring = {"law": "coulomb", "breakaway_force": 22.0, "breakaway_moment": 0.8}
+    *_, line = _seal_lines({"rings": {"stator": ring}, "sticks": 0, "slips": 0, "stuck_at_end": held})
+    assert len(line_words(line).split(", ")) == 3
+    both = [("", 11.5, "temperature"), ("and", 10.0, "temperature")]
+    assert line_words(Line("", both)) == "11.5 K and 10 K"
