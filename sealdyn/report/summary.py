@@ -317,7 +317,7 @@ def _radial_lines(summary) -> Iterator[Line]:
     kind, arc = "sectors of a lip" if summary["seal"] == "lip" else "segments", one["arc"]
     yield Line("model", [(f"{model['followers']} {kind}, {model['solver']}", None, "")])
     yield from _computation(model, summary["counts"], summary["wall_time"])
-    yield Line("follower", [("preload", one["preload"] / arc, "N/m"),
+    yield Line("follower", [("preload", one["preload"] / arc, "force_per_length"),
                             ("stiffness", one["stiffness"] / arc, "N/m^2"),
                             ("mass", one["mass"] / arc, "kg/m"), ("flange friction", one["friction"], "force")],
                detail=True)  # fmt: skip

@@ -233,3 +233,10 @@ def test_values_are_set_as_of_face_seals():
     scenario = read_scenario(LIP).with_(lip__preload="60 N/m", shaft__eccentricity=2e-4)
     assert scenario.scene.lip.preload == 60.0 and scenario.scene.shaft.eccentricity == 2e-4
     assert parse_scenario(scenario.to_toml(), "again").scene == scenario.scene
+
+
+def test_a_preload_is_read_per_length(tmp_path):
+    done = sealdyn("run", LIP, *SHORT, "--verbose", "--no-plot", cwd=tmp_path)
+    line = next(line for line in done.out.splitlines() if line.split()[:1] == ["follower"])
+    # 80 N/m of the lip's own and 0.5 N of its garter on 25 mm.
+    assert re.search(r"\b100 N/m,", line)
