@@ -225,7 +225,7 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
     odd = _refuse_settings(scenario) if scenario.study else []
     written = written_units({"scenario": scenario.text, "overrides": scenario.overrides})
     # The sentences of its rules and warnings have numbers, too.
-    with Progress() as bar, reading_in(written):
+    with reading_in(written), Progress() as bar:
         try:
             found = checked(scenario)
         except (SceneError, ArchiveError) as error:

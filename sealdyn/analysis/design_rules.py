@@ -149,7 +149,7 @@ def _finish(seal: Seal, limit) -> Finding:
         return missing_keys("contact.roughness")
     roughness, (hard, nose) = seal.scene.contact.roughness, limit
     most, with_nose = math.sqrt(2) * hard, math.hypot(hard, nose)
-    sentence = f"both faces are rough by {in_words('m', roughness)} together; two of 0.1 um have "
+    sentence = f"both faces are rough by {in_words('m', roughness)} together; two of {in_words('m', hard)} have "
     sentence += f"{in_words('m', most, 2)}, with a carbon nose up to {in_words('m', with_nose, 2)}"
     beyond = Verdict.NOTE if roughness <= with_nose else Verdict.FAIL
     return limit_finding(sentence, roughness, most=most, beyond=beyond)
@@ -164,13 +164,15 @@ def _film_thickness(seal: Seal, limit) -> Finding:
 
 
 def _leakage(seal: Seal, limit) -> Finding:
-    """Pass up to the goal, a note up to the limit of the data sheet (5 cc/h without one)."""
+    """Pass up to the goal, a note up to the limit of the data sheet (of a liquid 5 cc/h without one)."""
     film, own = seal.scene.film, seal.application.leakage_limit
     if initially(film.outer_pressure) == initially(film.inner_pressure):
         return missing_keys("film.outer_pressure", "film.inner_pressure")
     if math.isnan(seal.leakage):
         return other_seals("the film knows no leakage")
-    goal, most = limit
+    if film.gas is not None and own is None:
+        return other_seals("the guide's limit is that of a liquid; application.leakage_limit is this seal's own")
+    goal, most = (own, own) if film.gas is not None else limit
     leakage, most = seal.leakage, most if own is None else own
     goal = min(goal, most)
     whose = "the guide's" if own is None else "this seal's"
@@ -405,4 +407,4 @@ RULES = {
     "sliding_speed": Rule(_sliding_speed, SPEEDS["face seal"], "m/s", "20 000 ft/min"),
 }  # fmt: skip
 # In a gearbox: what is asked of a gas film in their place stands in other_rules.py.
-OF_OIL = ("coking", "film_thickness", "leakage", "lubricant_side", "seal_type")
+OF_OIL = ("coking", "film_thickness", "lubricant_side", "seal_type")

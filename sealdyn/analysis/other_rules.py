@@ -183,7 +183,8 @@ def _preload(what: str):
     def judge(scene, limit) -> Finding:
         followers = followers_of(scene)
         load = followers.preload / followers.arc
-        sentence = f"{what} presses with {load:.4g} N/m, usual are {limit[0]:g} to {limit[1]:g}"
+        pressed, least, most = (in_words("force_per_length", value) for value in (load, *limit))
+        sentence = f"{what} presses with {pressed}, usual are {least} to {most}"
         return limit_finding(sentence, load, *limit, beyond=Verdict.NOTE)
 
     return judge
@@ -222,7 +223,8 @@ def _segment_runout(scene, limit) -> Finding:
 
 def _axial_load(scene, limit) -> Finding:
     load = scene.circumferential.axial_force / (2.0 * math.pi * scene.shaft.radius)
-    sentence = f"axial springs press with {load:.4g} N/m, usual are about 70 (here {limit[0]:g} to {limit[1]:g})"
+    pressed, least, most = (in_words("force_per_length", value) for value in (load, *limit))
+    sentence = f"axial springs press with {pressed}, usual are about 70 N/m (here {least} to {most})"
     return limit_finding(sentence, load, *limit, beyond=Verdict.NOTE)
 
 

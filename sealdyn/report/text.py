@@ -243,11 +243,11 @@ def archive_lines(path, info: dict) -> list[str]:
 
 def _event(event) -> str:
     """What happened and when; of a contact also how long."""
-    when = f"{event['kind']} at t = {number(event['time'])} s"
+    when = f"{event['kind']} at t = {in_words('time', event['time'])}"
     if event["kind"] != "contact" or event.get("lift_off") is None:
         return when
     lasts = event["lift_off"] - event["time"]
-    return f"{when}, to the end" if math.isnan(lasts) else f"{when}, for {number(lasts)} s"
+    return f"{when}, to the end" if math.isnan(lasts) else f"{when}, for {in_words('time', lasts)}"
 
 
 # How what a spreadsheet takes for a formula begins.

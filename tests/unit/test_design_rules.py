@@ -172,6 +172,15 @@ def test_leakage_between_goal_and_limit_is_a_note_and_a_seal_may_have_its_own_li
     assert rows(viscosity, "application.leakage_limit=2 ml/h")["leakage"]["most"] == pytest.approx(2e-6 / 3600)
 
 
+def test_a_gas_seal_is_held_to_its_own_limit_of_leakage_alone():
+    """What the guide allows is of a liquid."""
+    assert rows(*GAS)["leakage"]["verdict"] == "not applicable"
+    leaks = rows(*GAS, "application.leakage_limit=1 m^3/h")["leakage"]
+    assert leaks["verdict"] == "pass" and leaks["most"] == pytest.approx(1 / 3600)
+    less = rows(*GAS, f"application.leakage_limit={3.6e9 * 0.5 * leaks['value']} ml/h")["leakage"]
+    assert less["verdict"] == "fail" and less["value"] == leaks["value"]
+
+
 def test_natural_frequencies_of_the_ring_on_its_springs():
     axial, tilt = rows()["shaft_resonance"]["modes"]
     assert axial["frequency"] == pytest.approx(math.sqrt(30e3 / 0.12) / (2 * math.pi), rel=1e-12)
