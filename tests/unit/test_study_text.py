@@ -32,4 +32,8 @@ def test_a_contact_is_listed_with_how_long_it_lasts():
     events.append({"kind": "film_minimum", "time": 0.75})
     info = {"created": "", "rows": 1, "status": "ok", "message": "", "events": events, "series": {}, "fields": {}}
     said = [line.split(maxsplit=1)[1] for line in archive_lines("a.h5", info) if line.strip().startswith("event")]
-    assert said == ["contact at t = 0 s, for 0.25 s", "contact at t = 0.5 s, to the end", "film_minimum at t = 0.75 s"]
+    assert said == [
+        "contact at t = 0 ms, for 250 ms",
+        "contact at t = 500 ms, to the end",
+        "film_minimum at t = 750 ms",
+    ]
