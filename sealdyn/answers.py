@@ -5,7 +5,7 @@ Whoever shows it (terminal, figure, page, file) takes names and units from `quan
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, is_dataclass
 from typing import Any
 
@@ -24,6 +24,18 @@ class Table:
     columns: Sequence[tuple[str, str]]
     rows: Sequence[Sequence[Any]]
     of_rows: Sequence[str] = ()
+
+
+def dotted(
+    tree: Mapping[str, Any], ends: Callable[[Mapping], bool] = lambda table: False, name: str = ""
+) -> Iterator[tuple[str, Any]]:
+    """Dotted keys and values of tables within tables; a table that `ends` the way is a value itself."""
+    for key, value in tree.items():
+        where = f"{name}.{key}" if name else key
+        if isinstance(value, Mapping) and not ends(value):
+            yield from dotted(value, ends, where)
+        else:
+            yield where, value
 
 
 def columns(records: Sequence[Any], names: Sequence[str]) -> dict[str, list]:

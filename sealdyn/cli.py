@@ -223,22 +223,21 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
 
     scenario = _read(file, set)
     odd = _refuse_settings(scenario) if scenario.study else []
-    written = written_units({"scenario": scenario.text, "overrides": scenario.overrides})
     # The sentences of its rules and warnings have numbers, too.
-    with reading_in(written), Progress() as bar:
-        try:
-            found = checked(scenario)
-        except (SceneError, ArchiveError) as error:
-            raise Stop(error.status, f"{file}: {error}") from None
-        bar(1.0, 1.0, "ready")
-    found["warnings"] += odd
-    if as_json:
-        print(json.dumps(found))
-    else:
-        with reading_in(written):
+    with reading_in(written_units({"scenario": scenario.text, "overrides": scenario.overrides})):
+        with Progress() as bar:
+            try:
+                found = checked(scenario)
+            except (SceneError, ArchiveError) as error:
+                raise Stop(error.status, f"{file}: {error}") from None
+            bar(1.0, 1.0, "ready")
+        found["warnings"] += odd
+        if as_json:
+            print(json.dumps(found))
+        else:
             say(*resolved_lines(found))
-        if (size := size_of(scenario)).bytes > WORTH_SAYING:
-            say(f"  size          {size}")
+            if (size := size_of(scenario)).bytes > WORTH_SAYING:
+                say(f"  size          {size}")
 
 
 def _refuse_settings(scenario) -> list[str]:

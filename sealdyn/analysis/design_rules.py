@@ -172,12 +172,12 @@ def _leakage(seal: Seal, limit) -> Finding:
         return other_seals("the film knows no leakage")
     if film.gas is not None and own is None:
         return other_seals("the guide's limit is that of a liquid; application.leakage_limit is this seal's own")
-    goal, most = (own, own) if film.gas is not None else limit
-    leakage, most = seal.leakage, most if own is None else own
-    goal = min(goal, most)
-    whose = "the guide's" if own is None else "this seal's"
+    goal, most = limit
+    if own is not None:
+        goal, most = min(goal, own) if film.gas is None else own, own
+    leakage, whose = seal.leakage, "the guide's" if own is None else "this seal's"
     sentence = f"aligned faces leak {in_words('leakage', leakage)} at the start, {whose} limit is "
-    sentence += f"{in_words('leakage', most)}, the goal {in_words('leakage', goal)}"
+    sentence += in_words("leakage", most) + (f", the goal {in_words('leakage', goal)}" if goal < most else "")
     if leakage > most:
         return limit_finding(sentence, leakage, most=most)
     return limit_finding(sentence, leakage, most=goal, beyond=Verdict.NOTE)

@@ -5,10 +5,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from ..answers import dotted
 from ..archive import ArchiveError, column, is_study, read_info
 from ..quantities import in_words, number, reading_in, shown_in
 from .summary import BELOW, is_below, is_radial, tilt_resolved
-from .text import dotted, speed_unit
+from .text import speed_unit
 
 # Of the larger value: what differs by less differs by rounding.
 ROUNDING = 1e-12

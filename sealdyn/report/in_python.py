@@ -11,8 +11,9 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..answers import dotted
 from .summary import run_answer
-from .text import dotted, line_words, lines, study_lines, table_columns
+from .text import line_words, lines, study_lines, table_columns
 
 if TYPE_CHECKING:
     from .charts.page import Figure

@@ -5,11 +5,11 @@ import importlib
 import re
 from pathlib import Path
 
-from ..answers import toml_line
+from ..answers import dotted, toml_line
 from ..archive import is_study, read_info, read_study
 from ..quantities import printed, reading_in
 from .summary import is_radial, run_answer
-from .text import dotted, is_over_time, line_words, question_of, solvers_words, table_columns, written_units
+from .text import is_over_time, line_words, question_of, solvers_words, table_columns, written_units
 
 TEMPLATE = Path(__file__).with_name("review.html")
 # Figures of a run and what they show.

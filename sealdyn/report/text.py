@@ -2,8 +2,7 @@
 
 import math
 import re
-from collections.abc import Callable, Iterator, Mapping
-from typing import Any
+from collections.abc import Mapping
 
 from ..answers import toml_line
 from ..kernel_cache import solvers_digest
@@ -94,18 +93,6 @@ def speed_unit(info: dict) -> tuple[str, float]:
     """The same of speeds, and how many of it make one rad/s."""
     with reading_in(written_units(info)):
         return shown_in("speed")
-
-
-def dotted(
-    tree: Mapping[str, Any], ends: Callable[[Mapping], bool] = lambda table: False, name: str = ""
-) -> Iterator[tuple[str, Any]]:
-    """Dotted keys and values of tables within tables; a table that `ends` the way is a value itself."""
-    for key, value in tree.items():
-        where = f"{name}.{key}" if name else key
-        if isinstance(value, Mapping) and not ends(value):
-            yield from dotted(value, ends, where)
-        else:
-            yield where, value
 
 
 def is_over_time(table: Mapping) -> bool:

@@ -17,10 +17,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .. import __version__
+from ..answers import dotted
 from ..archive.files import mark_sound
 from ..extensions import digest
 from ..kernel_cache import solvers_digest
-from ..report.text import dotted
 from ..scenario.errors import nearest_of
 from ..scenario.tables import outside_of
 from ..scene.radial import RadialScene

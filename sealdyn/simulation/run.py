@@ -9,7 +9,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from ..report.text import dotted
+from ..answers import dotted
 from ..scenario.errors import scene_errors_of
 from ..scenario.reader import Scenario, scenario_of, with_values
 from ..scene.radial import RadialScene

@@ -11,8 +11,8 @@ from in_process import InProcess
 from killed import COMMAND, kill_midway, mark_first
 
 import sealdyn
+from sealdyn.answers import dotted
 from sealdyn.archive import as_dataset
-from sealdyn.report.text import dotted
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.scenario.settings import axis, with_own_unit

@@ -8,8 +8,8 @@ import pytest
 from command import SCENARIOS
 
 import sealdyn
+from sealdyn.answers import dotted
 from sealdyn.dynamics.tally import Tally
-from sealdyn.report.text import dotted
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import read_scenario, with_values
 from sealdyn.simulation import batch

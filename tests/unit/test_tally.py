@@ -6,8 +6,8 @@ from command import SCENARIOS
 from scipy.integrate import simpson
 
 import sealdyn
+from sealdyn.answers import dotted
 from sealdyn.numerics.hermite import points
-from sealdyn.report.text import dotted
 from sealdyn.scenario.reader import read_scenario
 from sealdyn.simulation.result import output
 
